@@ -18,13 +18,17 @@ double Machine::max_jerk() const { return least_of_xyz(*this, &AxisLimits::jerk)
 double Machine::rapid_velocity() const { return least_of_xyz(*this, &AxisLimits::rapid_velocity); }
 
 std::string_view name_of(ControllerModel model) {
-  constexpr std::array<std::string_view, 5> kNames = {"look-ahead", "linuxcnc", "grbl", "grblhal",
-                                                      "klipper"};
+  constexpr std::array<std::string_view, 6> kNames = {"look-ahead", "linuxcnc", "grbl",
+                                                      "grblhal",    "klipper",  "marlin"};
   return kNames[static_cast<std::size_t>(model)];
 }
 
 bool is_grbl(ControllerModel model) {
   return model == ControllerModel::kGrbl || model == ControllerModel::kGrblhal;
+}
+
+bool has_one_queue(ControllerModel model) {
+  return is_grbl(model) || model == ControllerModel::kKlipper || model == ControllerModel::kMarlin;
 }
 
 std::string_view name_of(gcode::PathMode mode) {

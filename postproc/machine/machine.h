@@ -24,6 +24,7 @@ enum class ControllerModel {
              // single precision
   kGrblhal,  // the same, arcs in double precision
   kKlipper,  // square corner velocity, minimum cruise ratio, arcs in chords of equal length
+  kMarlin,   // junction deviation with a rule for short blocks, or steps of velocity; as grbl else
 };
 
 enum class Axis { kX, kY, kZ, kA, kB, kC };
@@ -40,6 +41,9 @@ struct AxisLimits {
   // Of the motor, per mm or degree: the ends of moves lie on whole steps. Infinite: they lie where
   // the program says.
   double steps = std::numeric_limits<double>::infinity();
+  // Per s: by so much an axis may change its velocity at once, where joints go by that (Marlin's
+  // classic jerk, RepRapFirmware's M566). Infinite: they go by the junction deviation.
+  double velocity_step = std::numeric_limits<double>::infinity();
 
   bool operator==(const AxisLimits&) const = default;
 };
@@ -97,10 +101,12 @@ struct Machine {
   bool operator==(const Machine&) const = default;
 };
 
-// "look-ahead", "linuxcnc", "grbl", "grblhal", "klipper"
+// "look-ahead", "linuxcnc", "grbl", "grblhal", "klipper", "marlin"
 [[nodiscard]] std::string_view name_of(ControllerModel model);
 // Is it grbl or grblHAL, which share their settings and their planner?
 [[nodiscard]] bool is_grbl(ControllerModel model);
+// Do rapids and cuts follow each other in one queue, without a stop between them?
+[[nodiscard]] bool has_one_queue(ControllerModel model);
 [[nodiscard]] std::string_view name_of(
     gcode::PathMode mode);                          // "blend", "exact-path", "exact-stop"
 [[nodiscard]] std::string_view name_of(Axis axis);  // "x" to "c"

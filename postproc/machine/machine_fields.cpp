@@ -95,6 +95,9 @@ constexpr std::array kAxisFields = {
     AxisField{"steps", "steps-per-mm", Quantity::kStepRate, Quantity::kAngularStepRate,
               &AxisLimits::steps, kOrInfinite,
               "moves end on whole ones: grbl's $100; inf: anywhere", true},
+    AxisField{"velocity-step", "velocity-step", Quantity::kVelocity, Quantity::kAngularVelocity,
+              &AxisLimits::velocity_step, kOrInfinite,
+              "that an axis may take at a joint: Marlin's jerk; inf: by junction-deviation", true},
 };
 
 bool is_within(double value, Allowed allowed) {
@@ -158,7 +161,8 @@ std::vector<MachineProblem> problems_of(const Machine& machine) {
   std::vector<MachineProblem> problems;
   for (const MachineField& field : machine_fields()) {
     // A corner within 0 would stop grbl at every joint; its model needs something to go by.
-    const bool stops = is_grbl(machine.model) && field.place == &Machine::junction_deviation;
+    const bool by_deviation = is_grbl(machine.model) || machine.model == ControllerModel::kMarlin;
+    const bool stops = by_deviation && field.place == &Machine::junction_deviation;
     Allowed allowed = field.allowed;
     allowed.zero = allowed.zero && !stops;
     check(machine.*field.place, allowed, field.quantity, std::string(field.key), problems);

@@ -16,8 +16,8 @@
 namespace batten::postproc {
 
 inline constexpr std::array kControllerModels = {
-    ControllerModel::kLinuxcnc, ControllerModel::kGrbl, ControllerModel::kGrblhal,
-    ControllerModel::kKlipper, ControllerModel::kLookAhead};
+    ControllerModel::kLinuxcnc, ControllerModel::kGrbl,   ControllerModel::kGrblhal,
+    ControllerModel::kKlipper,  ControllerModel::kMarlin, ControllerModel::kLookAhead};
 inline constexpr std::array kPathModes = {gcode::PathMode::kBlending, gcode::PathMode::kExactPath,
                                           gcode::PathMode::kExactStop};
 

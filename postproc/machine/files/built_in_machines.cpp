@@ -127,6 +127,17 @@ Machine grblhal_router() {
   return m;
 }
 
+// The same with Marlin, which has its own rules for joints and arcs.
+Machine marlin_router() {
+  Machine m = router();
+  m.name = "marlin-router";
+  m.description = "hobby router, Marlin 2, 5000 mm/min and 400 mm/s2";
+  m.source = "limits as router; Marlin's defaults of JUNCTION_DEVIATION_MM and BLOCK_BUFFER_SIZE";
+  m.model = ControllerModel::kMarlin;
+  m.junction_deviation = 0.013;
+  return m;
+}
+
 // A machining centre with an industrial control of which nothing else is known; 6 s from chip to
 // chip with a carousel.
 Machine mill() {
@@ -177,8 +188,9 @@ Machine old_mill() {
 
 std::span<const Machine> built_in_machines() {
   static const std::array machines = {
-      linuxcnc(),       fast_linuxcnc(), router(), grblhal_router(),  unrounded_router(),
-      klipper_router(), grbl(),          mill(),   high_speed_mill(), old_mill()};
+      linuxcnc(),       fast_linuxcnc(), router(), grblhal_router(), unrounded_router(),
+      klipper_router(), marlin_router(), grbl(),   mill(),           high_speed_mill(),
+      old_mill()};
   return machines;
 }
 

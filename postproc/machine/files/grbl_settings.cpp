@@ -16,6 +16,7 @@
 #include "gcode/text/characters.h"
 #include "gcode/text/source_text.h"
 #include "postproc/machine/files/machine_file.h"
+#include "postproc/machine/files/settings_file.h"
 #include "postproc/machine/machine_fields.h"
 
 namespace batten::postproc {
@@ -57,12 +58,8 @@ class DumpReader {
 
   void read(std::string_view dump) {
     if (dump.starts_with(gcode::kByteOrderMark)) dump.remove_prefix(gcode::kByteOrderMark.size());
-    for (std::size_t line = 1; !dump.empty(); ++line) {
-      const std::size_t end = dump.find('\n');
-      read_line(dump.substr(0, end), line);
-      if (end == std::string_view::npos) break;
-      dump.remove_prefix(end + 1);
-    }
+    for_each_line(dump,
+                  [this](std::string_view line, std::size_t number) { read_line(line, number); });
   }
 
   // Nothing when the setting is not in the dump.
@@ -73,7 +70,6 @@ class DumpReader {
 
  private:
   void read_line(std::string_view line, std::size_t number) {
-    if (line.ends_with('\r')) line.remove_suffix(1);
     const std::string_view text = without_blanks_before(line);
     if (is_passed_over(text)) return;
     const auto column = static_cast<std::size_t>(text.data() - line.data()) + 1;

@@ -358,8 +358,11 @@ std::shared_ptr<const Machine> read_machine_file(const std::string& file,
 
 std::string possible_machines() {
   return list_of(built_in_names()) +
-         ", a file NAME.toml, the NAME.ini of a LinuxCNC machine, or the NAME.cfg of one with "
-         "Klipper";
+         ", a file NAME.toml, the NAME.ini of a LinuxCNC machine, the NAME.cfg of one with "
+         "Klipper, "
+         "the NAME.yaml of one with FluidNC, the config.g of one with RepRapFirmware, or a "
+         "NAME.txt "
+         "with what Marlin answers to M503";
 }
 
 std::shared_ptr<const Machine> choose_machine(
@@ -367,8 +370,19 @@ std::shared_ptr<const Machine> choose_machine(
     const std::vector<std::filesystem::path>& being_read) {
   if (const Machine* machine = find_machine(choice)) return shared_built_in(*machine);
   if (has_suffix(choice, ".TOML")) return read_machine_file(choice, problems, being_read);
-  if (has_suffix(choice, ".CFG")) return read_printer_cfg(choice, problems);
-  if (has_suffix(choice, ".INI")) return read_machine_ini(choice, problems);
+  struct Reader {
+    std::string_view suffix;
+    std::shared_ptr<const Machine> (*read)(const std::string&, std::vector<std::string>&);
+  };
+  constexpr std::array<Reader, 6> kReaders = {{{".CFG", read_printer_cfg},
+                                               {".INI", read_machine_ini},
+                                               {".YAML", read_fluidnc_yaml},
+                                               {".YML", read_fluidnc_yaml},
+                                               {".G", read_reprap_config},
+                                               {".TXT", read_marlin_settings}}};
+  for (const Reader& reader : kReaders) {
+    if (has_suffix(choice, reader.suffix)) return reader.read(choice, problems);
+  }
   problems.push_back(fmt::format("{}: there is no machine '{}'{}; possible: {}", asked_by, choice,
                                  suggestion(choice, built_in_names()), possible_machines()));
   return nullptr;
@@ -392,7 +406,7 @@ std::string machine_file_text(const Machine& machine) {
   text += fmt::format("name = {}\n", toml_quoted(machine.name));
   text += fmt::format("description = {}\n", toml_quoted(machine.description));
   text += fmt::format("source = {}  # where the numbers come from\n", toml_quoted(machine.source));
-  text += fmt::format("model = \"{}\"  # linuxcnc, grbl, grblhal, klipper or look-ahead\n",
+  text += fmt::format("model = \"{}\"  # linuxcnc, grbl, grblhal, klipper, marlin or look-ahead\n",
                       name_of(machine.model));
   text += fmt::format(
       "path-mode = \"{}\"  # until the program says: blend (G64), exact-path (G61) or exact-stop\n",

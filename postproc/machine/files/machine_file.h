@@ -13,8 +13,10 @@
 namespace batten::postproc {
 
 // The name of a built-in machine, a machine file (NAME.toml), the INI of a LinuxCNC machine
-// (NAME.ini) or the configuration of one with Klipper (NAME.cfg). Adds to `problems` what is wrong
-// and returns nothing then; `asked_by` stands in front of what is wrong with the choice itself
+// (NAME.ini), or the configuration of one with Klipper (NAME.cfg), FluidNC (NAME.yaml),
+// RepRapFirmware (config.g) or Marlin (NAME.txt, its answer to M503). Adds to `problems` what is
+// wrong and returns nothing then; `asked_by` stands in front of what is wrong with the choice
+// itself
 // ("--machine"). `being_read`: see read_machine_file.
 [[nodiscard]] std::shared_ptr<const Machine> choose_machine(
     const std::string& choice, const std::string& asked_by, std::vector<std::string>& problems,
@@ -57,12 +59,26 @@ namespace batten::postproc {
 // A machine with Klipper from its printer.cfg. Read are [printer] max_velocity, max_accel,
 // max_z_velocity, max_z_accel, square_corner_velocity, minimum_cruise_ratio (or the older
 // max_accel_to_decel), and [gcode_arcs] resolution; the first two must be there, the others have
-// Klipper's defaults. All else is as the built-in machine klipper-router has it. [include ..] is
-// not followed.
+// Klipper's defaults. All else is as the built-in machine klipper-router has it. Files that
+// [include ..] names are read, too.
 //
 // Adds to `problems` what is wrong, with file, line and column, and returns nothing then.
 [[nodiscard]] std::shared_ptr<const Machine> read_printer_cfg(const std::string& file,
                                                               std::vector<std::string>& problems);
+
+// A machine with Marlin from what it answers to M503: M92, M201, M203, M204 T, M205 X Y Z or J; all
+// else is as marlin-router has it. One with RepRapFirmware from its config.g: M201, M203, M566 (or
+// M205), M204 T; planned with ends as programmed. Where a word stands twice, the last counts.
+[[nodiscard]] std::shared_ptr<const Machine> read_marlin_settings(
+    const std::string& file, std::vector<std::string>& problems);
+[[nodiscard]] std::shared_ptr<const Machine> read_reprap_config(const std::string& file,
+                                                                std::vector<std::string>& problems);
+
+// A machine with FluidNC from its YAML: axes/x/steps_per_mm, max_rate_mm_per_min and
+// acceleration_mm_per_sec2 (y, z), junction_deviation_mm, arc_tolerance_mm, planner_blocks; all
+// else is as router has it.
+[[nodiscard]] std::shared_ptr<const Machine> read_fluidnc_yaml(const std::string& file,
+                                                               std::vector<std::string>& problems);
 
 // The text of a file that says everything: read again, it is the same machine.
 [[nodiscard]] std::string machine_file_text(const Machine& machine);

@@ -13,107 +13,12 @@
 #include "gcode/text/characters.h"
 #include "gcode/text/source_text.h"
 #include "postproc/machine/files/machine_file.h"
+#include "postproc/machine/files/settings_file.h"
 #include "postproc/machine/machine_fields.h"
 
 namespace batten::postproc {
 
 namespace {
-
-// --- the file ------------------------------------------------------------------------------------
-
-// INI files as LinuxCNC reads them: [SECTION] lines, KEY = VALUE lines, comments from # or ; at the
-// beginning of a line, and `#INCLUDE FILE` lines, whose files stand in their place (and include no
-// further ones). Sections and keys keep their case; of two values the first counts.
-
-struct IniEntry {
-  std::string section;
-  std::string key;
-  std::string value;  // without blanks around it
-  std::string file;
-  std::size_t line = 0;    // from 1
-  std::size_t column = 0;  // of the value, from 1
-};
-
-std::string_view without_blanks_around(std::string_view text) {
-  constexpr std::string_view kBlanks = " \t\r";
-  const std::size_t first = text.find_first_not_of(kBlanks);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
-}
-
-class IniFile {
- public:
-  // Adds to `problems` what could not be read, with file and line.
-  IniFile(const std::string& file, std::vector<std::string>& problems) : problems_(problems) {
-    read(file, true);
-  }
-
-  // Null when there is none.
-  [[nodiscard]] const IniEntry* find(std::string_view section, std::string_view key) const {
-    const auto found = std::ranges::find_if(entries_, [&](const IniEntry& entry) {
-      return entry.section == section && entry.key == key;
-    });
-    return found == entries_.end() ? nullptr : &*found;
-  }
-  [[nodiscard]] bool has_section(std::string_view section) const {
-    return std::ranges::find(sections_, section) != sections_.end();
-  }
-
- private:
-  void read(const std::string& file, bool may_include) {
-    std::string error;
-    const auto source = gcode::SourceText::map_file(file, error);
-    if (!source) {
-      problems_.push_back(error);
-      return;
-    }
-    std::string_view rest = source->text();
-    for (std::size_t number = 1; !rest.empty(); ++number) {
-      const std::size_t end = rest.find('\n');
-      read_line(rest.substr(0, end), file, number, may_include);
-      if (end == std::string_view::npos) break;
-      rest.remove_prefix(end + 1);
-    }
-  }
-
-  void read_line(std::string_view line, const std::string& file, std::size_t number,
-                 bool may_include) {
-    constexpr std::string_view kInclude = "#INCLUDE";
-    const std::string_view text = without_blanks_around(line);
-    if (may_include && text.starts_with(kInclude)) {
-      include(without_blanks_around(text.substr(kInclude.size())), file, number);
-      return;
-    }
-    if (text.empty() || text.front() == '#' || text.front() == ';') return;
-    if (text.front() == '[') {
-      section_ = std::string(text.substr(1, text.find(']') - 1));
-      sections_.push_back(section_);
-      return;
-    }
-    const std::size_t equals = text.find('=');
-    if (equals == std::string_view::npos) return;
-    const std::string_view value = without_blanks_around(text.substr(equals + 1));
-    if (value.empty()) return;
-    entries_.push_back({section_, std::string(without_blanks_around(text.substr(0, equals))),
-                        std::string(value), file, number,
-                        static_cast<std::size_t>(value.data() - line.data()) + 1});
-  }
-
-  void include(std::string_view name, const std::string& by, std::size_t line) {
-    const std::filesystem::path file = std::filesystem::path(by).parent_path() / name;
-    std::error_code error;
-    if (name.empty() || !std::filesystem::is_regular_file(file, error)) {
-      problems_.push_back(fmt::format("{}:{}: #INCLUDE: there is no file '{}'", by, line, name));
-      return;
-    }
-    read(file.string(), false);
-  }
-
-  std::vector<std::string>& problems_;
-  std::vector<IniEntry> entries_;
-  std::vector<std::string> sections_;
-  std::string section_;
-};
 
 // --- the machine ---------------------------------------------------------------------------------
 
@@ -141,7 +46,8 @@ std::optional<double> number_of(std::string_view text) {
 
 class MachineIniReader {
  public:
-  MachineIniReader(const IniFile& ini, const std::string& file, std::vector<std::string>& problems)
+  MachineIniReader(const SectionFile& ini, const std::string& file,
+                   std::vector<std::string>& problems)
       : ini_(ini), file_(file), problems_(problems), origins_(file) {}
 
   Machine read() {
@@ -163,7 +69,7 @@ class MachineIniReader {
   }
 
  private:
-  void complain(const IniEntry& entry, const std::string& expected) {
+  void complain(const SettingEntry& entry, const std::string& expected) {
     problems_.push_back(fmt::format("{}:{}:{}: [{}]{}: {}, expected {}", entry.file, entry.line,
                                     entry.column, entry.section, entry.key, entry.value, expected));
   }
@@ -171,7 +77,7 @@ class MachineIniReader {
   // 1 where it is not known, which has been said then. Older files say how many of their units a
   // millimetre or a degree has.
   double unit_of(std::string_view key, std::span<const Unit> units) {
-    const IniEntry* entry = ini_.find("TRAJ", key);
+    const SettingEntry* entry = ini_.find("TRAJ", key);
     if (entry == nullptr) {
       problems_.push_back(fmt::format(
           "{}: no [TRAJ]{}, so its lengths mean nothing; expected mm or inch", file_, key));
@@ -189,14 +95,14 @@ class MachineIniReader {
   }
 
   // Nothing when there is none or it is no number, which has been said then.
-  std::optional<double> number_at(const IniEntry* entry) {
+  std::optional<double> number_at(const SettingEntry* entry) {
     if (entry == nullptr) return std::nullopt;
     const auto value = number_of(entry->value);
     if (!value) complain(*entry, "a number");
     return value;
   }
 
-  void remember(const std::string& key, const IniEntry& entry) {
+  void remember(const std::string& key, const SettingEntry& entry) {
     origins_.add(key, {fmt::format("[{}]{}", entry.section, entry.key), entry.line, entry.column,
                        entry.file});
   }
@@ -206,7 +112,7 @@ class MachineIniReader {
   // The letters of the joints in order: "XYYZ".
   [[nodiscard]] std::string joints() const {
     std::string letters;
-    if (const IniEntry* kinematics = ini_.find("KINS", "KINEMATICS")) {
+    if (const SettingEntry* kinematics = ini_.find("KINS", "KINEMATICS")) {
       constexpr std::string_view kCoordinates = "coordinates=";
       const std::size_t at = kinematics->value.find(kCoordinates);
       if (at != std::string::npos) {
@@ -215,15 +121,15 @@ class MachineIniReader {
         letters = rest.substr(0, rest.find(' '));
       }
     }
-    const IniEntry* coordinates = ini_.find("TRAJ", "COORDINATES");
+    const SettingEntry* coordinates = ini_.find("TRAJ", "COORDINATES");
     if (letters.empty() && coordinates != nullptr) letters = coordinates->value;
     return gcode::in_capitals(gcode::without_blanks(letters));
   }
 
   // Where the limit is: the axis' own, else that of its joint. Null: nowhere.
-  [[nodiscard]] const IniEntry* find_limit(char letter, const std::string& joints,
-                                           std::string_view key) const {
-    const IniEntry* entry = ini_.find(fmt::format("AXIS_{}", letter), key);
+  [[nodiscard]] const SettingEntry* find_limit(char letter, const std::string& joints,
+                                               std::string_view key) const {
+    const SettingEntry* entry = ini_.find(fmt::format("AXIS_{}", letter), key);
     const std::size_t joint = joints.find(letter);
     if (entry == nullptr && joint != std::string::npos) {
       entry = ini_.find(fmt::format("JOINT_{}", joint), key);
@@ -252,7 +158,7 @@ class MachineIniReader {
     const double unit = static_cast<std::size_t>(axis) < kLinearAxes ? mm_ : degrees_;
     const std::string table = fmt::format("axis.{}.", name_of(axis));
     const auto read_limit = [&](std::string_view ini_key, double& place, const std::string& key) {
-      const IniEntry* entry = find_limit(letter, joints, ini_key);
+      const SettingEntry* entry = find_limit(letter, joints, ini_key);
       if (entry == nullptr) {
         problems_.push_back(fmt::format("{}: no {} for axis {}, expected in [AXIS_{}]", file_,
                                         ini_key, letter, letter));
@@ -264,7 +170,7 @@ class MachineIniReader {
     read_limit("MAX_VELOCITY", limits.velocity, "velocity");
     read_limit("MAX_ACCELERATION", limits.acceleration, "acceleration");
     limits.rapid_velocity = limits.velocity;
-    if (const IniEntry* entry = find_limit(letter, joints, "MAX_VELOCITY")) {
+    if (const SettingEntry* entry = find_limit(letter, joints, "MAX_VELOCITY")) {
       remember(table + "rapid-velocity", *entry);
     }
   }
@@ -286,21 +192,21 @@ class MachineIniReader {
   // --- the planner ---------------------------------------------------------------------------
 
   void read_path() {
-    const IniEntry* feed = ini_.find("TRAJ", "MAX_LINEAR_VELOCITY");
+    const SettingEntry* feed = ini_.find("TRAJ", "MAX_LINEAR_VELOCITY");
     if (feed == nullptr) feed = ini_.find("TRAJ", "MAX_VELOCITY");  // up to LinuxCNC 2.7
     machine_.path_feed = Machine::kNone;
     if (const auto value = number_at(feed)) {
       machine_.path_feed = *value * mm_;
       remember("path-feed", *feed);
     }
-    const IniEntry* period = ini_.find("EMCMOT", "SERVO_PERIOD");
+    const SettingEntry* period = ini_.find("EMCMOT", "SERVO_PERIOD");
     if (const auto nanoseconds = number_at(period)) {
       machine_.servo_period = *nanoseconds * kNanosecond;
       machine_.block_period = machine_.servo_period;
       remember("servo-period", *period);
       remember("block-period", *period);
     }
-    const IniEntry* depth = ini_.find("TRAJ", "ARC_BLEND_OPTIMIZATION_DEPTH");
+    const SettingEntry* depth = ini_.find("TRAJ", "ARC_BLEND_OPTIMIZATION_DEPTH");
     if (const auto blocks = number_at(depth)) {
       constexpr double kQueue = 2000;  // blocks that the planner holds
       machine_.look_ahead = static_cast<int>(std::clamp(*blocks, 0.0, kQueue));
@@ -310,7 +216,7 @@ class MachineIniReader {
 
   // Run before each program; the units of the machine count in it unless it says G20 or G21.
   void read_startup_code() {
-    const IniEntry* entry = ini_.find("RS274NGC", "RS274NGC_STARTUP_CODE");
+    const SettingEntry* entry = ini_.find("RS274NGC", "RS274NGC_STARTUP_CODE");
     if (entry == nullptr) entry = ini_.find("EMC", "RS274NGC_STARTUP_CODE");
     if (entry == nullptr) return;
     gcode::Diagnostics found;
@@ -338,7 +244,7 @@ class MachineIniReader {
     remember("naive-cam-tolerance", *entry);
   }
 
-  const IniFile& ini_;
+  const SectionFile& ini_;
   const std::string& file_;
   std::vector<std::string>& problems_;
   ValueOrigins origins_;
@@ -353,7 +259,7 @@ class MachineIniReader {
 std::shared_ptr<const Machine> read_machine_ini(const std::string& file,
                                                 std::vector<std::string>& problems) {
   const std::size_t problems_before = problems.size();
-  const IniFile ini(file, problems);
+  const SectionFile ini(file, {.includes_by_comment = true}, problems);
   if (problems.size() > problems_before) return nullptr;
   Machine machine = MachineIniReader(ini, file, problems).read();
   if (problems.size() > problems_before) return nullptr;

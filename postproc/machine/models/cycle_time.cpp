@@ -82,6 +82,7 @@ StretchChain stretches_of(std::span<const TimedPiece> pieces, const Machine& mac
       return linuxcnc_stretches(pieces, machine, path, end, places);
     case ControllerModel::kGrbl:
     case ControllerModel::kGrblhal:
+    case ControllerModel::kMarlin:
       return grbl_stretches(pieces, machine, path, places);
     case ControllerModel::kKlipper:
       return klipper_stretches(pieces, machine, path, places);

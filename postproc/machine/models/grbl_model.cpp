@@ -1,4 +1,4 @@
-// grbl 1.1 and grblHAL: straight blocks only, between ends on whole steps; junction deviation,
+// grbl 1.1, grblHAL, Marlin: straight blocks only, between ends on whole steps; junction deviation,
 // trapezoids, a queue.
 #include <algorithm>
 #include <cmath>
@@ -56,13 +56,74 @@ double sweep_in_single_precision(const geometry::Arc& arc) {
   return angle * sign;
 }
 
+// Marlin: so many in a circle, none longer or shorter than its limits (mm); MIN_CIRCLE_SEGMENTS,
+// MAX_ARC_SEGMENT_MM, MIN_ARC_SEGMENT_MM as they come.
+int marlin_chords_of(const geometry::Arc& arc) {
+  constexpr double kOfCircle = 72;
+  constexpr double kLongest = 1;
+  constexpr double kShortest = 0.1;
+  const double wished = 2 * std::numbers::pi * geometry::radius_of(arc) / kOfCircle;
+  const double length = std::clamp(wished, kShortest, kLongest);
+  return std::max(1, static_cast<int>(geometry::length_of(arc) / length));
+}
+
 // A Bezier piece never reaches grbl; it is timed as the chords within the same tolerance.
-int chords_of(const geometry::PathPiece& piece, double tolerance) {
-  if (const auto* arc = std::get_if<geometry::Arc>(&piece)) return chords_of(*arc, tolerance);
+int chords_of(const geometry::PathPiece& piece, const Machine& machine) {
+  const double tolerance = machine.arc_tolerance;
+  if (const auto* arc = std::get_if<geometry::Arc>(&piece)) {
+    const bool is_marlin = machine.model == ControllerModel::kMarlin;
+    return is_marlin ? marlin_chords_of(*arc) : chords_of(*arc, tolerance);
+  }
   if (std::holds_alternative<geometry::Line>(piece)) return 1;
   const double bound = geometry::second_derivative_bound(piece);
   return std::max(1, static_cast<int>(std::ceil(std::sqrt(bound / 8 / tolerance))));
 }
+
+// How fast joints are passed, mm/s.
+class JointSpeed {
+ public:
+  explicit JointSpeed(const Machine& machine)
+      : deviation_(machine.junction_deviation),
+        is_marlin_(machine.model == ControllerModel::kMarlin),
+        acceleration_(axis_accelerations(machine)) {
+    for (std::size_t i = 0; i < kLinearAxes; ++i) {
+      steps_[static_cast<Eigen::Index>(i)] = machine.axes[i].velocity_step;
+    }
+  }
+
+  // `length`: mm, of the block after the joint.
+  [[nodiscard]] double between(const Vector3& before, const Vector3& after, double length) const {
+    if (!is_marlin_) {
+      return junction_deviation_speed(before, after, deviation_, acceleration_);
+    }
+    if (steps_.allFinite()) {
+      const Vector3 change = after - before;
+      return change.norm() > geometry::kSameDirection ? limit_along(change, steps_) : kNoLimit;
+    }
+    return std::min(junction_deviation_speed(before, after, deviation_, acceleration_),
+                    of_short_block(before, after, length));
+  }
+
+ private:
+  // Marlin's rule for blocks below 1 mm that turn by less than 45 degrees: as on the circle that
+  // has such chords.
+  [[nodiscard]] double of_short_block(const Vector3& before, const Vector3& after,
+                                      double length) const {
+    constexpr double kShort = 1;  // mm
+    const double cosine = before.dot(after);
+    const double turn = std::atan2(before.cross(after).norm(), cosine);
+    if (length >= kShort || cosine <= std::numbers::sqrt2 / 2 || turn <= geometry::kSameDirection) {
+      return kNoLimit;
+    }
+    const Vector3 across = (after - before).normalized();
+    return std::sqrt(length * limit_along(across, acceleration_) / turn);
+  }
+
+  double deviation_;
+  bool is_marlin_;
+  Vector3 acceleration_;
+  Vector3 steps_;
+};
 
 // Where a move ends: on whole steps of each axis, half of one away from zero.
 class StepGrid {
@@ -98,6 +159,7 @@ StretchChain grbl_stretches(std::span<const TimedPiece> pieces, const Machine& m
   chain.rules.look_ahead = std::max(1, machine.look_ahead - 1);
   const Vector3 acceleration = axis_accelerations(machine);
   const StepGrid grid(machine);
+  const JointSpeed joint(machine);
   const bool single_precision = machine.model == ControllerModel::kGrbl;
   std::optional<Vector3> before;
   for (std::size_t i = 0; i < pieces.size(); ++i) {
@@ -114,7 +176,7 @@ StretchChain grbl_stretches(std::span<const TimedPiece> pieces, const Machine& m
     }
     const geometry::PathPiece& piece =
         arc != nullptr && single_precision ? as_computed : timed.piece;
-    const int chords = chords_of(piece, machine.arc_tolerance);
+    const int chords = chords_of(piece, machine);
     Point3 to = grid.nearest(geometry::start_point(timed.piece));
     for (int k = 1; k <= chords; ++k) {
       const Point3 from =
@@ -125,9 +187,7 @@ StretchChain grbl_stretches(std::span<const TimedPiece> pieces, const Machine& m
       if (before) {
         const bool stops = path == gcode::PathMode::kExactStop && k == 1;
         chain.stretches.back().exit_velocity =
-            stops ? 0
-                  : junction_deviation_speed(*before, direction, machine.junction_deviation,
-                                             acceleration);
+            stops ? 0 : joint.between(*before, direction, way.norm());
       }
       before = direction;
       VelocityStretch s;

@@ -90,7 +90,9 @@ DwellTime dwell_of(const gcode::BlockWords& words, gcode::DwellUnit unit,
 
 DwellUnit dwell_unit_of(const gcode::Control* target, const Machine& machine) {
   if (target != nullptr) return target->dwell_unit;
-  if (machine.model == ControllerModel::kKlipper) return DwellUnit::kMilliseconds;
+  if (machine.model == ControllerModel::kKlipper || machine.model == ControllerModel::kMarlin) {
+    return DwellUnit::kMilliseconds;
+  }
   return machine.model == ControllerModel::kLookAhead ? DwellUnit::kByPoint : DwellUnit::kSeconds;
 }
 

@@ -10,10 +10,7 @@ namespace {
 
 bool is_motion(StepKind kind) { return kind == StepKind::kCut || kind == StepKind::kRapid; }
 
-// grbl and Klipper run rapids and feeds through one queue; others come to rest between the two.
-bool rests_between_rapids_and_cuts(const Machine& machine) {
-  return !is_grbl(machine.model) && machine.model != ControllerModel::kKlipper;
-}
+bool rests_between_rapids_and_cuts(const Machine& machine) { return !has_one_queue(machine.model); }
 
 }  // namespace
 

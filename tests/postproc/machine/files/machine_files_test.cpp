@@ -238,9 +238,9 @@ INSTANTIATE_TEST_SUITE_P(
                 "2:20: extra-dwell-time: -0.1, expected 0 or more (s)"},
         BadFile{"GrblWithoutJunctionDeviation", "junction-deviation = 0",
                 "2:22: junction-deviation: 0, expected above 0 (mm)"},
-        BadFile{
-            "UnknownModel", "model = \"fanuc\"",
-            "2:9: model: \"fanuc\", expected one of linuxcnc, grbl, grblhal, klipper, look-ahead"},
+        BadFile{"UnknownModel", "model = \"fanuc\"",
+                "2:9: model: \"fanuc\", expected one of linuxcnc, grbl, grblhal, klipper, marlin, "
+                "look-ahead"},
         BadFile{"UnknownPathMode", "path-mode = 61",
                 "2:13: path-mode: 61, expected one of blend, exact-path, exact-stop"},
         BadFile{"NameThatIsNoText", "name = 5", "2:8: name: 5, expected a text in quotes"},
@@ -248,7 +248,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "2:1: max-velocty: there is no such key, did you mean 'max-velocity'?"},
         BadFile{"SlipInAKeyOfAnAxis", "[axis.x]\nspeed = 1\n",
                 "3:1: axis.x.speed: there is no such key; possible: velocity, acceleration, jerk, "
-                "rapid-velocity, steps"},
+                "rapid-velocity, steps, velocity-step"},
         BadFile{"UnknownAxis", "[axis.u]\nvelocity = 1\n",
                 "2:7: axis.u: there is no such axis; possible: x, y, z, a, b, c"},
         BadFile{"AxisThatIsNoTable", "axis.x = 5\n", "2:10: axis.x: 5, expected a table [axis.x]"},
@@ -280,9 +280,10 @@ TEST(MachineFile, SaysWhatIsWrongWithItAsAWhole) {
            BadWhole{"based-on = \"rooter\"\n",
                     "my.toml:1:12: based-on: there is no machine 'rooter', did you mean 'router'?; "
                     "possible: linuxcnc, linuxcnc-fast, router, grblhal-router, router-unrounded, "
-                    "klipper-router, grbl, mill, high-speed, old-mill, a file NAME.toml, the "
-                    "NAME.ini of a "
-                    "LinuxCNC machine, or the NAME.cfg of one with Klipper\n",
+                    "klipper-router, marlin-router, grbl, mill, high-speed, old-mill, a file "
+                    "NAME.toml, the NAME.ini of a LinuxCNC machine, the NAME.cfg of one with "
+                    "Klipper, the NAME.yaml of one with FluidNC, the config.g of one with "
+                    "RepRapFirmware, or a NAME.txt with what Marlin answers to M503\n",
                     ""},
        }) {
     const Read result = read_toml(text);
@@ -639,9 +640,11 @@ TEST(ChooseMachine, ReadsFilesByTheirSuffix) {
   EXPECT_EQ(machine_of(read(folder, both)).tool_change_time, 8);
   EXPECT_EQ(read(folder, "ruter").problems,
             "--machine: there is no machine 'ruter', did you mean 'router'?; possible: linuxcnc, "
-            "linuxcnc-fast, router, grblhal-router, router-unrounded, klipper-router, grbl, mill, "
-            "high-speed, old-mill, a file NAME.toml, the NAME.ini of a LinuxCNC machine, or the "
-            "NAME.cfg of one with Klipper\n");
+            "linuxcnc-fast, router, grblhal-router, router-unrounded, klipper-router, "
+            "marlin-router, grbl, mill, high-speed, old-mill, a file NAME.toml, the NAME.ini of a "
+            "LinuxCNC machine, the NAME.cfg of one with Klipper, the NAME.yaml of one with "
+            "FluidNC, the config.g of one with RepRapFirmware, or a NAME.txt with what Marlin "
+            "answers to M503\n");
 }
 
 // $100 to $102; a dump without them says nothing of steps.
