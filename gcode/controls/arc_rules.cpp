@@ -188,13 +188,12 @@ std::string_view complaint(const geometry::Arc& printed, Units units, const Cont
   return strictest(printed, units, control);
 }
 
-// How many equal chords the control makes of an arc; 0: none.
-double chord_count(const ArcChords& chords, const geometry::Arc& arc) {
-  const double radius = geometry::radius_of(arc);
+// How many equal chords the control wants to make of an arc; infinite: it makes none.
+double wished_chords(const ArcChords& chords, double radius, double sweep, double arc_length) {
   double count = std::numeric_limits<double>::infinity();
   if (chords.error > 0) {
     const double half = std::sqrt(std::max(0.0, chords.error * (2 * radius - chords.error)));
-    count = half > 0 ? std::abs(arc.sweep) * radius / (2 * half) : 1;
+    count = half > 0 ? std::abs(sweep) * radius / (2 * half) : 1;
   }
   if (chords.longest > 0) {
     double length = chords.longest;
@@ -202,22 +201,47 @@ double chord_count(const ArcChords& chords, const geometry::Arc& arc) {
       const double wished = 2 * std::numbers::pi * radius / chords.per_circle;
       length = std::clamp(wished, chords.shortest, chords.longest);
     }
-    count = std::min(count, geometry::length_of(arc) / length);
+    count = std::min(count, arc_length / length);
   }
-  // In single precision a whole number may come out as the one below.
+  return count;
+}
+
+// 0: none. In single precision a whole number may come out as the one below.
+double chord_count(const ArcChords& chords, double radius, double sweep, double arc_length) {
+  const double count = wished_chords(chords, radius, sweep, arc_length);
   return std::isinf(count) ? 0 : std::max(1.0, std::floor((1 - kArcRules.count_noise) * count));
 }
+
+// mm: by how much the radius shrinks with each chord that is turned on by the first terms of a
+// series: the next one.
+double shrinking(double radius, double turn) { return radius * turn * turn * turn * turn / 24; }
 
 }  // namespace
 
 double chord_error(const ArcChords& chords, const geometry::Arc& arc) {
-  const double count = chord_count(chords, arc);
+  return chord_error(chords, geometry::radius_of(arc), arc.sweep, geometry::length_of(arc));
+}
+
+double chord_error(const ArcChords& chords, double radius, double sweep, double length) {
+  const double count = chord_count(chords, radius, sweep, length);
   if (count == 0) return 0;
+  const double turn = std::abs(sweep) / count;
+  return radius * (1 - std::cos(turn / 2)) +
+         std::min(count - 1, chords.turned) * shrinking(radius, turn);
+}
+
+std::optional<CertainChords> certain_chords(const ArcChords& chords, const geometry::Arc& arc) {
+  constexpr double kMost = 1e4;  // whoever asks for so many is better served by chord_error
   const double radius = geometry::radius_of(arc);
+  const double wished = wished_chords(chords, radius, arc.sweep, geometry::length_of(arc));
+  if (std::isinf(wished)) return CertainChords{};
+  const double sweep_noise = std::numbers::sqrt2 * rounding_in_32_bits(arc) / radius;
+  const double noise = (kArcRules.certain_count + sweep_noise / std::abs(arc.sweep)) * wished;
+  const double count = std::max(1.0, std::floor(wished - noise));
+  if (count > kMost || std::max(1.0, std::floor(wished + noise)) != count) return std::nullopt;
   const double turn = std::abs(arc.sweep) / count;
-  // The next term of the series, by which the radius shrinks with each chord.
-  const double shrinks = radius * turn * turn * turn * turn / 24;
-  return radius * (1 - std::cos(turn / 2)) + std::min(count - 1, chords.turned) * shrinks;
+  return CertainChords{static_cast<int>(count),
+                       std::min(count - 1, chords.turned) * shrinking(radius, turn)};
 }
 
 namespace {
@@ -258,7 +282,11 @@ std::string_view misread_by_klipper(const geometry::Arc& arc, const ArcChords& c
   const bool is_circle = std::abs(arc.sweep) > kArcRules.greatest_sweep;
   if (std::abs(sweep) < std::abs(arc.sweep) - std::numbers::pi) return "no motion";
   if (std::abs(sweep) > std::abs(arc.sweep) + std::numbers::pi) return "a full turn";
-  return is_circle && closed && chord_count(chords, arc) == 1 ? "no motion" : "";
+  return is_circle && closed &&
+                 chord_count(chords, geometry::radius_of(arc), arc.sweep,
+                             geometry::length_of(arc)) == 1
+             ? "no motion"
+             : "";
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <numbers>
+#include <optional>
 #include <string_view>
 
 #include "gcode/control/control.h"
@@ -40,6 +41,7 @@ struct ArcRuleNumbers {
   double steps_of_mismatch = 1.5;
   double grbl_full_turn = 5e-7;  // radians: a sweep nearer to 0 gets a full turn
   double count_noise = 1e-5;     // part of the number of chords, computed in single precision
+  double certain_count = 2e-5;   // the same, with all that is computed before it
   double of_many_chords = 1.25;  // of the wished error, what arcs of ten chords and more have
 };
 inline constexpr ArcRuleNumbers kArcRules;
@@ -52,6 +54,18 @@ inline constexpr ArcRuleNumbers kArcRules;
 // mm: how far the chords that the control makes of this arc leave it at most; 0: it makes none.
 // Facts: docs/controllers/grbl.md, docs/controllers/printer_family.md.
 [[nodiscard]] double chord_error(const ArcChords& chords, const geometry::Arc& arc);
+// The same of an arc by its radius, sweep and length (mm, radians, mm).
+[[nodiscard]] double chord_error(const ArcChords& chords, double radius, double sweep,
+                                 double length);
+
+// How many equal chords the control makes of this arc (0: none), and how far they may be from
+// chords with their ends on it; nothing where a last digit decides on their number.
+struct CertainChords {
+  int count = 0;
+  double off = 0;  // mm
+};
+[[nodiscard]] std::optional<CertainChords> certain_chords(const ArcChords& chords,
+                                                          const geometry::Arc& arc);
 
 // What else this control may make of an arc of a source, which was written for another one or by
 // somebody who did not know: "no motion", "a full turn"; empty where it runs the arc. Arcs of our

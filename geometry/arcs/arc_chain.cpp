@@ -215,9 +215,12 @@ class ArcChain {
   bool holds(const PlaneArc& arc, double from, double to, double from_height,
              double to_height) const {
     if (!allowed(arc) || !(to > from)) return false;
+    const double length = std::hypot(arc.length(), to_height - from_height);
+    const ArcSides sides = limits_.running.sides_of(arc, length, limits_.deviation, from, to);
+    if (!sides.any()) return false;
     for (std::size_t i = curve_.index_of(from); i < curve_.size(); ++i) {
       if (curve_.breaks()[i] >= to) break;
-      if (!stays_near(curve_.part(i, from, to), arc, limits_.deviation)) return false;
+      if (!stays_near(curve_.part(i, from, to), arc, sides)) return false;
     }
     return limits_.flat || heights_hold(arc, from, to, from_height, to_height);
   }

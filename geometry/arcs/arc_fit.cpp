@@ -55,6 +55,17 @@ double range_along(const CurvePieces& pieces, const Vector3& axis) {
   return greatest - least;
 }
 
+double length_of(const std::vector<Point2>& points) {
+  double length = 0;
+  for (std::size_t i = 1; i < points.size(); ++i) length += (points[i] - points[i - 1]).norm();
+  return length;
+}
+
+// What is left across of `whole` where so much is used up along the axis.
+double beside(double along, double whole) {
+  return whole > along ? std::sqrt(whole * whole - along * along) : 0;
+}
+
 // One curve, chained in one plane.
 class ArcFit {
  public:
@@ -69,6 +80,15 @@ class ArcFit {
     limits_.deviation = options.max_deviation * (flat_ ? 1.0 : kFit.plane_share);
     limits_.height_deviation = options.max_deviation * kFit.height_share;
     limits_.flat = flat_;
+    if (!flat_ && limits_.running.error) {
+      limits_.running.room = [room = options.running.room, along = limits_.height_deviation](
+                                 double u0, double u1) {
+        ArcRunning::Room there = room(u0, u1);
+        there.left = beside(along, there.left);
+        there.right = beside(along, there.right);
+        return there;
+      };
+    }
   }
 
   // Nothing where it takes too many arcs.
@@ -195,6 +215,16 @@ class ArcFit {
     ArcSplineOptions options;
     options.ArcRange::operator=(options_);
     options.tolerance = (1 - kFit.chord_part) * limits_.deviation;
+    options.outside *= 1 - kFit.chord_part;
+    if (options_.running.error) {
+      const double per_mm = (end.u - start.u) / length_of(points);
+      options.running.room = [this, per_mm, u = start.u](double from, double to) {
+        ArcRunning::Room there = options_.running.room(u + per_mm * from, u + per_mm * to);
+        there.left -= kFit.chord_part * limits_.deviation;
+        there.right -= kFit.chord_part * limits_.deviation;
+        return there;
+      };
+    }
     options.start_angle = start.angle;
     options.end_angle = end.angle;
     options.kinks = false;

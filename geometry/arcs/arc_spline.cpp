@@ -75,8 +75,8 @@ class Search {
   Search(std::span<const Point2> points, const ArcSplineOptions& options, std::size_t at_most)
       : options_(options),
         effort_(kEfforts[static_cast<std::size_t>(options.effort)]),
-        band_(points,
-              {options.tolerance, 1 / options.min_radius, options.max_sweep, effort_.stride}),
+        band_(points, {options.tolerance, options.outside, 1 / options.min_radius,
+                       options.max_sweep, effort_.stride}),
         count_(band_.samples().size()),
         best_arcs_(at_most + 1) {
     if (options.end_angle) end_along_ = unit_vector(*options.end_angle);
@@ -206,6 +206,31 @@ class Search {
     return stop_at(from, end, sample + 1);
   }
 
+  [[nodiscard]] double station_of(const BandEntry& entry) const {
+    return band_.samples()[entry.next - 1].station;
+  }
+
+  // A stop that is nearer, where the arc to this one would be run too far off.
+  [[nodiscard]] std::optional<Stop> nearer_stop(const Stop& stop, double curvature) const {
+    const BandEntry& entry = nodes_[static_cast<std::size_t>(stop.before)].entry;
+    const PlaneArc arc = node_of(stop).arc;
+    const double from = station_of(entry);
+    const double length = arc.length();
+    const double part = options_.running.good_part_of(
+        arc, std::min(options_.outside, options_.tolerance), from, from + length);
+    if (part >= 1 || curvature == 0) return std::nullopt;
+    const double turn = part * length * curvature;
+    const Vector2 left(-entry.along.y(), entry.along.x());
+    const Point2 end = rounded(entry.place + std::sin(turn) / curvature * entry.along +
+                               (1 - std::cos(turn)) / curvature * left);
+    const Vector2 chord = end - entry.place;
+    if (chord.norm() <= 2 * options_.grid + kSamePlace || is_flat(entry.along, chord)) {
+      return std::nullopt;
+    }
+    const std::size_t last = sample_at(from + part * length, entry.next, stop.entry.next - 1);
+    return stop_at(static_cast<std::size_t>(stop.before), end, last + 1);
+  }
+
   // Every arc from node i that is worth a look.
   void spread(std::size_t i, std::vector<Stop>& found) const {
     const ArcFan fan = band_.fan(nodes_[i].entry);
@@ -221,10 +246,16 @@ class Search {
       last = j;
       const CurvatureRange& range = fan[j - next];
       const auto add = [&](double curvature) {
-        if (auto stop = stop_on(i, curvature, j)) {
-          judge(*stop);
-          found.push_back(*stop);
+        auto stop = stop_on(i, curvature, j);
+        if (!stop) return;
+        if (options_.running.error) {
+          if (auto nearer = nearer_stop(*stop, curvature)) {
+            judge(*nearer);
+            found.push_back(*nearer);
+          }
         }
+        judge(*stop);
+        found.push_back(*stop);
       };
       if (range.low < 0 && range.high > 0) add(0);
       for (const double place : effort_.in_range) {
@@ -262,7 +293,7 @@ class Search {
       if (same != of_place.end() && same->second == effort_.of_one_place) continue;
       Node node = node_of(stop);
       const BandEntry& from = nodes_[static_cast<std::size_t>(node.before)].entry;
-      const auto passed = band_.passed(from, node.arc);
+      const auto passed = passes(from, node.arc);
       if (!passed || *passed < from.next) continue;
       if (same == of_place.end()) same = of_place.insert(same, {place, 0});
       ++same->second;
@@ -303,7 +334,7 @@ class Search {
     };
     if (node.arc.is_line() && turns(entry.along, end - entry.place)) return false;
     if (end_along_ && turns(node.entry.along, *end_along_)) return false;
-    if (band_.passed(entry, node.arc) != count_) return false;
+    if (passes(entry, node.arc) != count_) return false;
     offer(node, arcs + 1);
     return true;
   }
@@ -315,18 +346,27 @@ class Search {
       const Point2 middle = rounded(joint->place);
       Node first = node_to(i, middle, 0);
       if (!allowed(first.arc)) continue;
-      const auto next = band_.passed(entry, first.arc);
+      const auto next = passes(entry, first.arc);
       if (!next || *next == count_) continue;
       first.entry.next = *next;
       Node second;
       second.arc = arc_arriving(middle, end, *end_along_, options_.max_radius);
-      if (!allowed(second.arc) || band_.passed(first.entry, second.arc) != count_) continue;
+      if (!allowed(second.arc) || passes(first.entry, second.arc) != count_) continue;
       second.entry = {end, *end_along_, count_};
       second.before = static_cast<std::ptrdiff_t>(nodes_.size());
       nodes_.push_back(first);
       offer(second, arcs + 2);
       return;
     }
+  }
+
+  [[nodiscard]] std::optional<std::size_t> passes(const BandEntry& entry,
+                                                  const PlaneArc& arc) const {
+    const double length = arc.length();
+    const double from = station_of(entry);
+    return band_.passed(
+        entry, arc,
+        options_.running.sides_of(arc, length, options_.tolerance, from, from + length));
   }
 
   [[nodiscard]] bool allowed(const PlaneArc& arc) const {
@@ -378,7 +418,7 @@ class Search {
     Node node = node_of(*stop);
     if (!allowed(node.arc)) return false;
     const BandEntry& from = nodes_[static_cast<std::size_t>(node.before)].entry;
-    const auto passed = band_.passed(from, node.arc);
+    const auto passed = passes(from, node.arc);
     if (!passed || *passed >= count_ || *passed <= from.next) return false;
     node.kink = true;
     for (const double off : kStarts) {

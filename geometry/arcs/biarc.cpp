@@ -36,14 +36,15 @@ bool holds_all_along(const PlaneCubic& piece, int halvings, const Ends& ends,
 }
 
 // `piece` relative to the center.
-bool stays_near_circle(const PlaneCubic& piece, const PlaneArc& arc, double deviation) {
+bool stays_near_circle(const PlaneCubic& piece, const PlaneArc& arc, const ArcSides& sides) {
+  const double deviation = std::max(sides.inside, sides.outside);
   for (int i = 0; i < 3; ++i) {
     const Vector2 leg = piece.control[i + 1] - piece.control[i];
     const double forward = cross(piece.control[i], leg) * (arc.sweep > 0 ? 1 : -1);
     if (forward < -deviation * piece.control[i].norm()) return false;
   }
-  const double inner = std::max(arc.radius - deviation, 0.0);
-  const double outer = arc.radius + deviation;
+  const double inner = std::max(arc.radius - sides.inside, 0.0);
+  const double outer = arc.radius + sides.outside;
   const auto allowed = [least = inner * inner, most = outer * outer](double squared) {
     return least <= squared && squared <= most;
   };
@@ -136,6 +137,10 @@ std::optional<BiarcJoint> biarc_joint(const Point2& start, const Vector2& t0, co
 }
 
 bool stays_near(const CubicBezier& piece, const PlaneArc& arc, double deviation) {
+  return stays_near(piece, arc, ArcSides{deviation, deviation});
+}
+
+bool stays_near(const CubicBezier& piece, const PlaneArc& arc, const ArcSides& sides) {
   PlaneCubic local;
   if (arc.is_line()) {
     const Vector2 along = (arc.end - arc.start).normalized();
@@ -143,10 +148,10 @@ bool stays_near(const CubicBezier& piece, const PlaneArc& arc, double deviation)
       const Vector2 q = piece.control[i].head<2>() - arc.start;
       local.control[i] = {along.dot(q), cross(along, q)};
     }
-    return stays_near_line(local, deviation);
+    return stays_near_line(local, sides.inside);
   }
   for (int i = 0; i < 4; ++i) local.control[i] = piece.control[i].head<2>() - arc.center;
-  return stays_near_circle(local, arc, deviation);
+  return stays_near_circle(local, arc, sides);
 }
 
 namespace {
@@ -168,6 +173,40 @@ void append_crossings(const Arc& arc, const Vector3& quadrant_from, std::vector<
 }
 
 }  // namespace
+
+namespace {
+
+// An arc to the left has what is farther from its centre on the right.
+double outside_of(const PlaneArc& arc, const ArcRunning::Room& room) {
+  return arc.sweep > 0 ? room.right : room.left;
+}
+
+double inside_of(const PlaneArc& arc, const ArcRunning::Room& room) {
+  return arc.sweep > 0 ? room.left : room.right;
+}
+
+}  // namespace
+
+ArcSides ArcRunning::sides_of(const PlaneArc& arc, double length, double most, double from,
+                              double to) const {
+  if (!error || arc.is_line()) return {most, most};
+  const Error run = error(arc.radius, std::abs(arc.sweep), length);
+  const Room there = room(from, to);
+  if (run.off > there.error) return {-1, -1};
+  return {std::min(most, outside_of(arc, there) - run.off),
+          std::min(most, inside_of(arc, there) - (run.certain ? 0 : run.off))};
+}
+
+double ArcRunning::good_part_of(const PlaneArc& arc, double outside, double from, double to) const {
+  if (!error || arc.is_line()) return 1;
+  constexpr double kShorter = 1e-3;  // than what is good by a hair
+  const double run_off = error(arc.radius, std::abs(arc.sweep), arc.length()).off;
+  const Room there = room(from, to);
+  const double whole = outside_of(arc, there);
+  const double good = std::min(there.error, std::max(whole - outside, whole / 2));
+  if (run_off <= good) return 1;
+  return good > 0 ? (1 - kShorter) * std::sqrt(good / run_off) : 0;
+}
 
 std::vector<Arc> arc_parts(const Arc& arc, const ArcPartsOptions& options) {
   const double length = std::abs(arc.sweep);

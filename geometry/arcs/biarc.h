@@ -1,6 +1,8 @@
 // Arcs and pairs of arcs in a plane, from points and tangents.
 #pragma once
 
+#include <functional>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -22,6 +24,45 @@ struct PlaneArc {
   [[nodiscard]] double start_angle() const;  // of the tangent, radians
 };
 
+// How far what is followed may be from an arc: farther from the centre than it, and nearer. mm
+struct ArcSides {
+  double outside = 0;
+  double inside = 0;
+
+  [[nodiscard]] bool any() const { return outside > 0 && inside > 0; }
+};
+
+// What runs the arcs may leave them, as controls do that cut them into chords of their own: these
+// lie inside.
+struct ArcRunning {
+  // What there is for it beside a part of the path that is followed, mm: how far this may be to the
+  // left and to the right of what is run, and the error alone.
+  struct Room {
+    double left = std::numeric_limits<double>::infinity();
+    double right = std::numeric_limits<double>::infinity();
+    double error = std::numeric_limits<double>::infinity();
+  };
+
+  struct Error {
+    double off = 0;       // mm
+    bool certain = true;  // else it may be on either side, as far as is known
+  };
+
+  // By radius (mm), sweep (radians) and length (mm) of an arc; it grows with the square of the
+  // length but where one chord more is made. None: arcs are run as they are.
+  std::function<Error(double radius, double sweep, double length)> error;
+  // Between two places of the path: parameters of a curve, stations of a polyline (mm).
+  std::function<Room(double from, double to)> room;
+
+  // Of an arc beside this part, where all may be off by `most`; below 0: it may not be there at
+  // all. A helix is longer than in the plane.
+  [[nodiscard]] ArcSides sides_of(const PlaneArc& arc, double length, double most, double from,
+                                  double to) const;
+  // The part of an arc that is off by so much outside and may stand there, where the whole may not.
+  [[nodiscard]] double good_part_of(const PlaneArc& arc, double outside, double from,
+                                    double to) const;
+};
+
 // Which arcs may be made, and where they may end.
 struct ArcRange {
   double min_radius = 0.1;  // mm; a tighter bend becomes short lines, or a kink
@@ -30,6 +71,10 @@ struct ArcRange {
   // mm: inner ends are rounded to multiples of it before the arcs are computed, so that the printed
   // ends are the ends that the arcs were made for. The first and the last are not. 0: no rounding.
   double grid = 0;
+  // mm: what is followed is mostly no farther outside of an arc than this, whatever the deviation
+  // that is allowed: for what runs it.
+  double outside = std::numeric_limits<double>::infinity();
+  ArcRunning running;
 };
 
 // The arc between two points that turns by `sweep`; a line when it is flatter than
@@ -71,6 +116,8 @@ struct BiarcJoint {
 // to go forward along it. Bounds: Bernstein coefficients of the squared distance from the
 // center, which is a polynomial of degree six; the piece is halved where they are not sharp.
 [[nodiscard]] bool stays_near(const CubicBezier& piece, const PlaneArc& arc, double deviation);
+// The same, with the part of the curve that is farther from the center than the arc, and nearer.
+[[nodiscard]] bool stays_near(const CubicBezier& piece, const PlaneArc& arc, const ArcSides& sides);
 
 struct ArcPartsOptions {
   double max_sweep = 0;  // radians, > 0

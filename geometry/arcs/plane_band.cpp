@@ -16,13 +16,15 @@ double heading_of(const Vector2& v) { return std::atan2(v.y(), v.x()); }
 // A fan that closes sample by sample. An arc from the origin along the first axis with
 // curvature k passes a place (x, y) at a distance of at most e when
 //   k (x^2 + y^2 - e^2) lies between 2 (y - e) and 2 (y + e),
-// from | |place - centre| - 1 / |k| | <= e.
+// from | |place - centre| - 1 / |k| | <= e. Where the place is farther from the centre, e is
+// another one: above k = 0 in the upper bound, below it in the lower one.
 class ClosingFan {
  public:
   ClosingFan(const BandEntry& entry, const PlaneBand::Limits& limits, double steepest)
       : place_(entry.place),
         along_(entry.along),
-        tolerance_(kBand.fan_part * limits.tolerance),
+        inside_(kBand.fan_part * limits.tolerance),
+        outside_(kBand.fan_part * std::min(limits.outside, limits.tolerance)),
         range_{-limits.max_curvature, limits.max_curvature},
         steepest_(steepest) {}
 
@@ -31,12 +33,12 @@ class ClosingFan {
     const Vector2 way = sample - place_;
     const double x = way.dot(along_);
     const double y = cross(along_, way);
-    const double beyond = x * x + y * y - tolerance_ * tolerance_;
+    const double square = x * x + y * y;
+    const double beyond = square - inside_ * inside_;
     if (beyond <= 0) return true;  // the start itself is near enough
     if (x <= 0 || std::abs(y) > steepest_ * x) return false;
-    const double scale = 2 / beyond;
-    const double low = std::max(range_.low, scale * (y - tolerance_));
-    const double high = std::min(range_.high, scale * (y + tolerance_));
+    const double low = std::max(range_.low, -greatest(-y, square));
+    const double high = std::min(range_.high, greatest(y, square));
     if (low > high) return false;
     range_ = {low, high};
     squared_ = beyond;
@@ -47,9 +49,17 @@ class ClosingFan {
   [[nodiscard]] double width() const { return (range_.high - range_.low) * squared_ / 2; }
 
  private:
+  // Curvature of an arc that passes a place so far to its left.
+  [[nodiscard]] double greatest(double y, double square) const {
+    if (y + outside_ >= 0) return 2 / (square - outside_ * outside_) * (y + outside_);
+    if (y + inside_ >= 0) return 0;
+    return 2 / (square - inside_ * inside_) * (y + inside_);
+  }
+
   Point2 place_;
   Vector2 along_;
-  double tolerance_;
+  double inside_;   // mm
+  double outside_;  // mm
   CurvatureRange range_;
   double steepest_;
   double squared_ = 0;
@@ -82,21 +92,25 @@ class ArcMeter {
   struct Foot {
     double along;  // mm from the start, negative before it
     double off;    // mm
+    double most;   // mm, that it may be on that side of the arc
     double half;   // mm, how far before and after the foot the arc is within the tolerance
   };
 
   // Quick where each place is near the one that was asked for before it.
-  [[nodiscard]] Foot foot(const Point2& place, double tolerance) {
+  [[nodiscard]] Foot foot(const Point2& place, const ArcSides& sides) {
     if (arc_.is_line()) {
+      const double tolerance = sides.inside;
       const Vector2 way = place - arc_.start;
       const double off = std::abs(cross(first_, way));
-      return {way.dot(first_), off, std::sqrt(std::max(0.0, tolerance * tolerance - off * off))};
+      return {way.dot(first_), off, tolerance,
+              std::sqrt(std::max(0.0, tolerance * tolerance - off * off))};
     }
     const Vector2 way = place - arc_.center;
     const double distance = way.norm();
     const double off = std::abs(distance - radius_);
+    const double tolerance = distance > radius_ ? sides.outside : sides.inside;
     const double room = std::max(0.0, tolerance * tolerance - off * off);
-    return {angle_to(way) * radius_, off,
+    return {angle_to(way) * radius_, off, tolerance,
             std::sqrt(room * radius_ / std::max(distance, kSamePlace))};
   }
 
@@ -213,28 +227,29 @@ ArcReach PlaneBand::reach(const BandEntry& entry) const {
   return {i, closing.width()};
 }
 
-std::optional<std::size_t> PlaneBand::passed(const BandEntry& entry, const PlaneArc& arc) const {
+std::optional<std::size_t> PlaneBand::passed(const BandEntry& entry, const PlaneArc& arc,
+                                             const ArcSides& sides) const {
+  if (!sides.any()) return std::nullopt;
   ArcMeter meter(arc);
-  const double tolerance = limits_.tolerance;
   double at = 0;  // everything before is matched
   std::size_t i = entry.next;
   for (; i < samples_.size(); ++i) {
     const Sample& sample = samples_[i];
-    const ArcMeter::Foot foot = meter.foot(sample.place, tolerance);
+    const ArcMeter::Foot foot = meter.foot(sample.place, sides);
     if (foot.along > meter.length() + kSamePlace) break;
     // Not passed by this arc: then it ends on the edge before the sample, which is asked below.
-    if (foot.off > tolerance || at > foot.along + foot.half) break;
+    if (foot.off > foot.most || at > foot.along + foot.half) break;
     const double to = std::max(at, foot.along - foot.half);
-    if (!meter.bulges_within(tolerance, at, to, sample)) return std::nullopt;
+    if (!meter.bulges_within(sides.inside, at, to, sample)) return std::nullopt;
     at = to;
   }
   if (i == samples_.size()) {
-    const bool meets = (arc.end - samples_.back().place).norm() <= tolerance;
+    const bool meets = (arc.end - samples_.back().place).norm() <= sides.inside;
     return meets ? std::optional(i) : std::nullopt;
   }
   const Sample& next = samples_[i];
-  if (distance_to_segment(arc.end, samples_[i - 1].place, next.place) > tolerance ||
-      !meter.bulges_within(tolerance, at, meter.length(), next)) {
+  if (distance_to_segment(arc.end, samples_[i - 1].place, next.place) > sides.inside ||
+      !meter.bulges_within(sides.inside, at, meter.length(), next)) {
     return std::nullopt;
   }
   return i;

@@ -66,6 +66,7 @@ class PlaneBand {
 
   struct Limits {
     double tolerance = 0;      // mm, > 0
+    double outside = 0;        // mm, > 0: of it, for what is farther from the centre than an arc
     double max_curvature = 0;  // 1/mm, > 0
     double max_sweep = 0;      // radians, below pi
     std::size_t stride = 1;    // `reach` looks at each so many-th sample as long as it may
@@ -80,11 +81,12 @@ class PlaneBand {
   // The end of that fan; with a stride narrow places between the samples may be overlooked.
   [[nodiscard]] ArcReach reach(const BandEntry& entry) const;
 
-  // Whether the arc (or line) from `entry` stays within the tolerance of the polyline, and the
-  // polyline of it, both going forward (Frechet distance). Returns the first sample that lies
-  // beyond the arc's end; samples().size() when it ends at the last one.
-  [[nodiscard]] std::optional<std::size_t> passed(const BandEntry& entry,
-                                                  const PlaneArc& arc) const;
+  // Whether the arc (or line) from `entry` stays within `sides` (no more than the tolerance of the
+  // band; a line: `inside`) of the polyline, and the polyline of it, both going forward (Frechet
+  // distance). Returns the first sample that lies beyond the arc's end; samples().size() when it
+  // ends at the last one.
+  [[nodiscard]] std::optional<std::size_t> passed(const BandEntry& entry, const PlaneArc& arc,
+                                                  const ArcSides& sides) const;
 
  private:
   void add_edge(const Point2& from, const Point2& to, double angle, double turn_before,

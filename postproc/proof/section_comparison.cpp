@@ -224,7 +224,47 @@ struct TargetChords {
   std::vector<double> errors;  // none where no arc is cut
   double greatest = 0;
   std::size_t worst = 0;  // piece
+
+  [[nodiscard]] bool is_cut(std::size_t piece) const {
+    return !errors.empty() && errors[piece] > 0;
+  }
 };
+
+// The path that the target runs: chords where it makes them of new arcs, and their number is
+// certain.
+struct RunPath {
+  Path pieces;
+  std::vector<double> beside;         // mm, for each: how far what is run may be from it
+  std::vector<std::size_t> piece_of;  // of the new part
+};
+
+RunPath run_path(const Part& after, const TargetChords& chords, const gcode::Control& target) {
+  RunPath run;
+  const auto add = [&run](PathPiece piece, double beside, std::size_t of) {
+    run.pieces.push_back(std::move(piece));
+    run.beside.push_back(beside);
+    run.piece_of.push_back(of);
+  };
+  const Path pieces = after.path();
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    const auto* arc = std::get_if<geometry::Arc>(&pieces[i]);
+    const bool is_cut = arc != nullptr && chords.is_cut(i);
+    const auto certain = is_cut ? gcode::certain_chords(target.chords, *arc) : std::nullopt;
+    if (!certain || certain->count == 0) {
+      add(pieces[i], is_cut ? chords.errors[i] : 0, i);
+      continue;
+    }
+    geometry::Point3 from = arc->start;
+    for (int k = 1; k <= certain->count; ++k) {
+      const geometry::Point3 to =
+          k == certain->count ? arc->end
+                              : geometry::point_at(*arc, static_cast<double>(k) / certain->count);
+      add(geometry::Line{from, to}, certain->off, i);
+      from = to;
+    }
+  }
+  return run;
+}
 
 TargetChords chords_of_target(const PartPair& pair, const gcode::Control* target) {
   TargetChords found;
@@ -261,13 +301,20 @@ std::vector<Violation> chords_violations(const PartPair& pair, const TargetChord
   }
   if (to_blame.empty()) {
     const Path before = pair.before.path();
-    const Path after = pair.after.path();
-    const PathComparison run =
-        promise.kind == geometry::ToleranceKind::kBand
-            ? geometry::compare_in_band(before, after, tolerance - chords.greatest).paths
-            : geometry::compare_paths(before, after, tolerance, chords.errors);
-    if (run.verdict == Verdict::kProved) return {};
-    to_blame = {chords.errors[run.worst_piece_b] > 0 ? run.worst_piece_b : chords.worst};
+    std::size_t worst = 0;
+    if (promise.kind == geometry::ToleranceKind::kBand) {
+      const Path after = pair.after.path();
+      const auto found = geometry::compare_in_band(before, after, tolerance - chords.greatest);
+      if (found.paths.verdict == Verdict::kProved) return {};
+      worst = found.paths.worst_piece_b;
+    } else {
+      const RunPath run = run_path(pair.after, chords, *promise.target);
+      const PathComparison found =
+          geometry::compare_paths(before, run.pieces, tolerance, run.beside);
+      if (found.verdict == Verdict::kProved) return {};
+      worst = run.piece_of[found.worst_piece_b];
+    }
+    to_blame = {chords.is_cut(worst) ? worst : chords.worst};
   }
   std::vector<Violation> violations;
   for (const std::size_t piece : to_blame) {

@@ -43,6 +43,7 @@ std::optional<Candidate> make_candidate(const RunTask& task, const RunTimes& tim
   Candidate candidate;
   candidate.form = plan.form;
   candidate.chords_for_steps = plan.chords_for_steps;
+  candidate.arcs_as_chords = plan.arcs_as_chords;
   const std::vector<TimedPiece> moves = timed(plan);
   Figures& figures = candidate.figures;
   figures.times = times.of_candidate(moves, facts.scale.original.times);
@@ -203,12 +204,10 @@ class CurveForms {
   [[nodiscard]] double far() const { return std::min(left_, kFormTuning.far * share_); }
 
   // Of arcs that are no farther than `deviation` from where they are looked for, where `whole` is
-  // left: some of that is for the chords that the target makes of them.
+  // left.
   [[nodiscard]] PlanOptions arcs_within(double deviation, double whole) const {
-    const double for_control = std::min(kFormTuning.for_control * whole,
-                                        gcode::usual_chord_error(task_.options.target->chords));
     PlanOptions plan = plan_within(left_);
-    plan.max_deviation = std::min(deviation, whole - for_control);
+    plan.max_deviation = std::min(deviation, whole);
     plan.chord_height = kPlans.balanced * plan.max_deviation;
     plan.tolerance = left_ + curve_.path.deviation;
     return plan;
@@ -248,7 +247,9 @@ class CurveForms {
     }
     for (const double deviation : all) {
       // Were those of the next smaller deviation as near as can be, these would be the same.
-      const bool farther = flat && deviation > all.front();
+      // With the target's own chords they are not as far from it as they may be.
+      const bool cut = task_.options.target->chords.any();
+      const bool farther = flat && !cut && deviation > all.front();
       PlanOptions plan = arcs_within(std::min(left_, deviation), left_);
       // Those are there to be near, not few.
       const bool near = deviation < all.back() && !wants_few_moves(task_.options);
@@ -288,11 +289,16 @@ class CurveForms {
   // Arcs in the band around the vertices themselves. Of arcs no more should come than there were:
   // the search finds one fewer here and there in a band that is a little less wide.
   void offer_arc_splines() {
-    if (one_sided_ || !(wants_few_moves(task_.options) || !task_.run.arcs.empty())) return;
+    const bool cut = task_.options.target->chords.any();  // arcs along the curve have less room
+    const bool few = wants_few_moves(task_.options);
+    if (one_sided_ || !(few || cut || !task_.run.arcs.empty())) return;
     const double whole = left_ + curve_.path.deviation;
     for (const double part : kFormTuning.bands) {
       PlanOptions band = arcs_within(part * whole, whole);
-      if (wants_few_moves(task_.options)) band.arc_effort = geometry::ArcEffort::kThorough;
+      // What is outside of an arc is farther from the chords that the target makes of it.
+      band.outside = whole - std::min(kFormTuning.for_control * whole,
+                                      gcode::usual_chord_error(task_.options.target->chords));
+      if (few) band.arc_effort = geometry::ArcEffort::kThorough;
       offers_.push_back({Form::kArcs, 0, 0, band, true});
       if (task_.run.arcs.empty()) return;
     }

@@ -1,5 +1,7 @@
 #include "postproc/stream/smooth_result.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <string_view>
@@ -127,6 +129,7 @@ class Reporter {
     r.method = chosen->method;
     r.form = chosen->form;
     r.chords_for_steps = chosen->chords_for_steps;
+    r.arcs_as_chords = chosen->arcs_as_chords;
     r.computed_blocks = computed_blocks(section);
     r.proved = proved_;
     r.deviation_mm = deviation_within(section);
@@ -305,6 +308,14 @@ gcode::Diagnostics notes_on_runs(std::span<const RunReport> runs, const gcode::P
       "the equal steps of --linearize ilca are too many for this run; found chords, expected "
       "equal steps",
       [](const RunReport& run) { return run.chords_for_steps; });
+  const gcode::ArcChords& own = target.chords;
+  tell_first(
+      gcode::Severity::kNote, "arcs-as-chords",
+      fmt::format("some arcs of this run are lines, since {} itself would cut them into "
+                  "chords {} mm {}, too coarse here; expected a finer setting of the control",
+                  target.name, own.error > 0 ? own.error : own.longest,
+                  own.error > 0 ? "beside them" : "long"),
+      [](const RunReport& run) { return run.arcs_as_chords; });
   return notes;
 }
 

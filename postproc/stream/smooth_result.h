@@ -53,7 +53,8 @@ struct RunReport {
   std::size_t computed_blocks = 0;  // of a rewritten run: with expressions, which are numbers now
   double deviation_mm = 0;          // proved bound
   bool proved = false;
-  bool chords_for_steps = false;  // see plan_lines
+  bool chords_for_steps = false;  // see OutputPlan
+  bool arcs_as_chords = false;
   double noise_mm = 0;
   double max_curvature_before = 0;  // 1/mm, circle through three neighbouring vertices
   double max_curvature_after = 0;
@@ -135,8 +136,9 @@ using Progress = std::function<bool(double)>;
 // - the note `missing-provenance` where the target has no certain comment: nothing in the text says
 //   then that it was smoothed;
 // - the warning `curves-unverified` for curves, in the words of the target's CurveFormat::caution;
-// - the note `chords-for-steps` for chords in the place of the equal steps that were asked for.
-// `program` may be the part of it with these runs.
+// - the note `chords-for-steps` for chords in the place of the equal steps that were asked for;
+// - the note `arcs-as-chords` for those in the place of arcs that the target would cut too
+// coarsely. `program` may be the part of it with these runs.
 [[nodiscard]] gcode::Diagnostics notes_on_runs(std::span<const RunReport> runs,
                                                const gcode::Program& program,
                                                const gcode::Control& target);

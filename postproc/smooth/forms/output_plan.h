@@ -38,6 +38,7 @@ struct OutputPlan {
   std::vector<PlannedCurve> curves;         // in order
   std::vector<std::size_t> comments_after;  // of the run's last blocks
   bool chords_for_steps = false;            // see plan_lines
+  bool arcs_as_chords = false;  // of ours, since the target's own would leave some arcs too far
 };
 
 struct PlanOptions {
@@ -45,7 +46,10 @@ struct PlanOptions {
   const Machine* machine = nullptr;
   gcode::Units units = gcode::Units::kMillimetre;
   gcode::Plane active_plane = gcode::Plane::kXY;
-  double max_deviation = 0.005;    // mm, moves to curve: the share of the form
+  double max_deviation = 0.005;  // mm, moves to curve: the share of the form
+  // Of it, where the curve is farther from the centre than an arc: the target's own chords of the
+  // arc lie on the other side.
+  double outside = std::numeric_limits<double>::infinity();
   double keep_corner_angle = 3.2;  // radians: see geometry::FairOptions
   Linearize linearize = Linearize::kChord;
   geometry::ArcEffort arc_effort = geometry::ArcEffort::kQuick;
@@ -109,8 +113,8 @@ inline constexpr PlanTuning kPlans;
 // run's motions, and none is a helix where the target takes none. Nothing when no plane serves. Arcs that the
 // target would refuse are chords already, and so are those that with the target's own chords would
 // be farther from the run than `tolerance`, or that these leave more than those of the arcs that
-// the run has there and than the target itself aims at. Comments are placed by the length along the moves, which
-// may be one short move off. `bends`: of the curve.
+// the run has there and than the target itself aims at. Comments are placed by the length along the
+// moves, which may be one short move off. `bends`: of the curve.
 [[nodiscard]] std::optional<OutputPlan> plan_arcs(const Run& run, const geometry::SmoothCurve& fair,
                                                   const geometry::MarkedPieces& pieces,
                                                   const CurvatureProfile& bends,

@@ -1,7 +1,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <numeric>
 #include <utility>
+#include <vector>
 
 #include "gcode/controls/arc_rules.h"
 #include "gcode/state/modal_state.h"
@@ -92,6 +95,7 @@ geometry::ArcFitOptions fit_options(const PlanOptions& options, const PlaneAxes&
                                     bool helical) {
   geometry::ArcFitOptions fit;
   fit.max_deviation = fit_deviation(options);
+  fit.outside = (1 - kPlans.arc_chords) * options.outside;
   fit.axis = Vector3::Unit(plane.normal);
   fit.helical = helical;
   fit.min_radius = options.target->min_radius;
@@ -101,11 +105,139 @@ geometry::ArcFitOptions fit_options(const PlanOptions& options, const PlaneAxes&
   return fit;
 }
 
+// How far the chords that the target makes of an arc leave it. Printing may move each end by a
+// step, which takes a chord more or less, or longer ones; it moves the centre by less.
+geometry::ArcRunning::Error run_error(const gcode::ArcChords& chords, double grid, double radius,
+                                      double sweep, double length) {
+  constexpr double kOfCenter = 1e-3;
+  const double part = std::min(0.5, 2 * grid / length);
+  const auto error = [&](double times) {
+    return gcode::chord_error(chords, radius, times * sweep, times * length);
+  };
+  // Of as many chords longer ones are farther off.
+  const bool certain = error(1 - part - kOfCenter) <= error(1 + part + kOfCenter);
+  return {std::max(error(1 - part), error(1 + part)), certain};
+}
+
+// What the target's chords of the run's own arcs leave of these, by place.
+class RunChords {
+ public:
+  RunChords(const Run& run, const gcode::ArcChords& chords) : run_(run) {
+    const double usual = gcode::usual_chord_error(chords);
+    aimed_at_ = std::isfinite(usual) ? usual : 0;
+    for (const RunArc& arc : run.arcs) errors_.push_back(gcode::chord_error(chords, arc.arc));
+  }
+
+  // mm: the greatest between two vertices, or what the target itself aims at; without an arc there,
+  // new ones may have any.
+  [[nodiscard]] double greatest(std::size_t first, std::size_t last) const {
+    const auto begin = std::ranges::upper_bound(run_.arcs, first, {}, &RunArc::last);
+    double greatest = aimed_at_;
+    auto i = static_cast<std::size_t>(begin - run_.arcs.begin());
+    const std::size_t from = i;
+    for (; i < run_.arcs.size() && run_.arcs[i].first < last; ++i) {
+      greatest = std::max(greatest, errors_[i]);
+    }
+    return i > from ? greatest : std::numeric_limits<double>::infinity();
+  }
+
+ private:
+  const Run& run_;
+  std::vector<double> errors_;  // of its arcs
+  double aimed_at_ = 0;
+};
+
+// How far the run is to the left and to the right of the curve along one of its edges, mm.
+struct BesideCurve {
+  double left = 0;
+  double right = 0;
+};
+
+// The path that arcs follow: a place for each vertex, increasing, which vertex of the run it is,
+// and how far the run is beside it at each edge (none: it is the run itself).
+struct FollowedPath {
+  std::vector<double> places;
+  std::vector<std::size_t> vertices;
+  std::vector<BesideCurve> beside;
+  RunChords before;
+  double tolerance;
+
+  [[nodiscard]] geometry::ArcRunning::Room room(double from, double to) const {
+    const auto index = [this](auto found) {
+      return static_cast<std::size_t>(found - places.begin());
+    };
+    const std::size_t behind = index(std::ranges::upper_bound(places, from));
+    const std::size_t first = std::min(std::max<std::size_t>(behind, 1) - 1, places.size() - 2);
+    const std::size_t last =
+        std::clamp(index(std::ranges::lower_bound(places, to)), first + 1, places.size() - 1);
+    BesideCurve most;
+    for (std::size_t i = first; i < last && !beside.empty(); ++i) {
+      most.left = std::max(most.left, beside[i].left);
+      most.right = std::max(most.right, beside[i].right);
+    }
+    return {tolerance - most.left, tolerance - most.right,
+            before.greatest(vertices[first], vertices[last])};
+  }
+};
+
+// Seen along the axis of the arcs, at some places of each edge.
+std::vector<BesideCurve> beside_curve(const Run& run, const geometry::SmoothCurve& fair,
+                                      const Vector3& axis) {
+  constexpr int kParts = 4;
+  const auto& at = fair.vertex_parameters;
+  std::vector<BesideCurve> all(run.points.size() - 1);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    for (int k = 0; k <= kParts; ++k) {
+      const double part = static_cast<double>(k) / kParts;
+      const double u = at[i] + part * (at[i + 1] - at[i]);
+      const Point3 place = run.points[i] + part * (run.points[i + 1] - run.points[i]);
+      const Vector3 left = axis.cross(fair.curve.derivative_at(u, 1));
+      const double size = left.norm();
+      if (!(size > 0)) continue;  // along the axis
+      const double off = (place - fair.curve.point_at(u)).dot(left) / size;
+      all[i].left = std::max(all[i].left, off);
+      all[i].right = std::max(all[i].right, -off);
+    }
+  }
+  return all;
+}
+
+bool takes_chords_off(const PlanOptions& options) {
+  return options.target->chords.any() && options.tolerance > 0;
+}
+
+// What the search for arcs has to know of the target's own chords.
+geometry::ArcRunning running_of(const PlanOptions& options, FollowedPath path) {
+  geometry::ArcRunning running;
+  running.error = [&chords = options.target->chords, grid = arc_grid(options)](
+                      double radius, double sweep, double length) {
+    return run_error(chords, grid, radius, sweep, length);
+  };
+  running.room = [path = std::make_shared<const FollowedPath>(std::move(path))](
+                     double from, double to) { return path->room(from, to); };
+  return running;
+}
+
+// Of arcs along the curve.
+geometry::ArcRunning running_along(const Run& run, const geometry::SmoothCurve& fair,
+                                   const Vector3& axis, const PlanOptions& options) {
+  if (!takes_chords_off(options)) return {};
+  FollowedPath path{fair.vertex_parameters, std::vector<std::size_t>(run.points.size()),
+                    beside_curve(run, fair, axis), RunChords(run, options.target->chords),
+                    options.tolerance};
+  std::iota(path.vertices.begin(), path.vertices.end(), 0);
+  return running_of(options, std::move(path));
+}
+
 // Replaces arcs that the target would cut too coarsely by chords of ours.
 class OwnChords {
  public:
   OwnChords(const Run& run, const geometry::SmoothCurve& fair, const PlanOptions& options)
-      : run_(run), fair_(fair), options_(options), chords_(options.target->chords) {}
+      : run_(run),
+        fair_(fair),
+        options_(options),
+        chords_(options.target->chords),
+        before_(run, chords_) {}
 
   void put_into(OutputPlan& plan) {
     if (!chords_.any()) return;
@@ -121,6 +253,7 @@ class OwnChords {
         moves.push_back(std::move(move));
         continue;
       }
+      plan.arcs_as_chords = true;
       for (const PathPiece& chord : chords_for(*arc, *height)) {
         moves.push_back({chord, move.feed, {}, move.start});
       }
@@ -136,49 +269,52 @@ class OwnChords {
     while (first_ + 2 < at.size() && at[first_ + 1] <= start) ++first_;
     std::size_t last = first_ + 1;  // of the run: the arc is between these vertices
     while (last + 1 < at.size() && at[last] < end) ++last;
-    const double left = options_.tolerance - distance(arc, last);
-    const double error = error_of(arc);
-    if (error <= left && error <= error_before(last)) return std::nullopt;
+    const geometry::ArcRunning::Error error = error_of(arc);
+    if (distance(arc, error, last) <= options_.tolerance &&
+        error.off <= before_.greatest(first_, last)) {
+      return std::nullopt;
+    }
+    const double left = options_.tolerance - distance(arc, {}, last);
     return std::max(left, kPlans.spline_chords * options_.max_deviation);
   }
 
-  // Printing may shorten it by a step at each end, which takes a chord more or less.
-  [[nodiscard]] double error_of(geometry::Arc arc) const {
-    arc.sweep *= 1 - std::min(0.5, 2 * arc_grid(options_) / geometry::length_of(arc));
-    return gcode::chord_error(chords_, arc);
+  [[nodiscard]] geometry::ArcRunning::Error error_of(const geometry::Arc& arc) const {
+    return run_error(chords_, arc_grid(options_), geometry::radius_of(arc), arc.sweep,
+                     geometry::length_of(arc));
   }
 
-  // Of the arcs that the run has there, or what the target itself aims at; without any, new ones
-  // may have any.
-  [[nodiscard]] double error_before(std::size_t last) {
-    while (next_arc_ < run_.arcs.size() && run_.arcs[next_arc_].last <= first_) ++next_arc_;
-    const double usual = gcode::usual_chord_error(chords_);
-    double greatest = std::isfinite(usual) ? usual : 0;
-    std::size_t i = next_arc_;
-    for (; i < run_.arcs.size() && run_.arcs[i].first < last; ++i) {
-      greatest = std::max(greatest, gcode::chord_error(chords_, run_.arcs[i].arc));
-    }
-    return i > next_arc_ ? greatest : std::numeric_limits<double>::infinity();
-  }
-
-  // mm, about: between the arc and the run, from the vertex before it to the one behind it.
-  [[nodiscard]] double distance(const geometry::Arc& arc, std::size_t last) const {
+  // mm, about: between the run, from the vertex before the arc to the one behind it, and the arc
+  // and what is so far inside of it.
+  [[nodiscard]] double distance(const geometry::Arc& arc, const geometry::ArcRunning::Error& error,
+                                std::size_t last) const {
+    const double inside = error.off;
+    const double outside = error.certain ? 0 : error.off;
     double greatest = 0;
     const double radius = geometry::radius_of(arc);
     for (std::size_t i = first_ + 1; i < last; ++i) {
       const Vector3 out = run_.points[i] - arc.center;
-      greatest = std::max(greatest, std::abs((out - out.dot(arc.axis) * arc.axis).norm() - radius));
+      const double off = (out - out.dot(arc.axis) * arc.axis).norm() - radius;
+      greatest = std::max({greatest, off + inside, outside - off});
     }
     constexpr int kParts = 4;
     for (int k = 0; k <= kParts; ++k) {
       const Point3 point = geometry::point_at(arc, static_cast<double>(k) / kParts);
-      double nearest = std::numeric_limits<double>::infinity();
-      for (std::size_t i = first_; i < last; ++i) {
-        nearest = std::min(nearest, distance_to_edge(point, i));
-      }
-      greatest = std::max(greatest, nearest);
+      greatest = std::max(greatest, distance_to_run(point, last) + outside);
+      // Both ends of the arc are ends of chords.
+      if (inside == 0 || k == 0 || k == kParts) continue;
+      const Vector3 out = point - arc.center;
+      const Vector3 across = (out - out.dot(arc.axis) * arc.axis).normalized();
+      greatest = std::max(greatest, distance_to_run(point - inside * across, last));
     }
     return greatest;
+  }
+
+  [[nodiscard]] double distance_to_run(const Point3& point, std::size_t last) const {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (std::size_t i = first_; i < last; ++i) {
+      nearest = std::min(nearest, distance_to_edge(point, i));
+    }
+    return nearest;
   }
 
   [[nodiscard]] double distance_to_edge(const Point3& point, std::size_t i) const {
@@ -193,8 +329,8 @@ class OwnChords {
   const geometry::SmoothCurve& fair_;
   const PlanOptions& options_;
   const gcode::ArcChords& chords_;
-  std::size_t first_ = 0;     // vertex at or before the arc
-  std::size_t next_arc_ = 0;  // of the run, that ends behind it
+  RunChords before_;
+  std::size_t first_ = 0;  // vertex at or before the arc
 };
 
 // `whole`: all of the curve in its pieces, where these are known, and about how many chords it
@@ -252,8 +388,11 @@ std::size_t most_pieces(const PlanOptions& options) {
 // than so many pieces.
 template <typename Plan>
 bool takes_too_many(const Plan& plan, const PlanOptions& options) {
-  if (options.arc_effort == geometry::ArcEffort::kBrief || options.most_arcs >= kAnyNumber)
-    return false;
+  // With the target's own chords less of a band is left, and a brief search finds many more.
+  const bool says_little = options.target->chords.any() ||
+                           options.arc_effort == geometry::ArcEffort::kBrief ||
+                           options.most_arcs >= kAnyNumber;
+  if (says_little) return false;
   const double found = std::floor(kPlans.brief_finds * static_cast<double>(options.most_arcs));
   return !plan(geometry::ArcEffort::kBrief, static_cast<std::size_t>(found));
 }
@@ -278,6 +417,7 @@ std::optional<OutputPlan> plan_arcs(const Run& run, const geometry::SmoothCurve&
     flat_somewhere = true;
     const auto with_effort = [&](geometry::ArcEffort effort, std::size_t at_most) {
       geometry::ArcFitOptions fit = fit_options(options, plane, false);
+      fit.running = running_along(run, fair, fit.axis, options);
       fit.effort = effort;
       fit.at_most = at_most;
       return plan_in(run, fair, *flat, nullptr, 0, fit, options);
@@ -295,6 +435,7 @@ std::optional<OutputPlan> plan_arcs(const Run& run, const geometry::SmoothCurve&
   std::size_t most = std::min(motion_count(run), std::min(options.most_arcs, kAnyNumber) + 1);
   for (const PlaneAxes& plane : flattest_first(run, planes)) {
     geometry::ArcFitOptions fit = fit_options(options, plane, true);
+    fit.running = running_along(run, fair, fit.axis, options);
     fit.at_most = most;
     auto plan = plan_in(run, fair, fair.curve, &pieces, chords, fit, options);
     if (!plan || plan->moves.size() >= most) continue;
@@ -388,20 +529,34 @@ class ArcSplinePlanner {
       vertices.push_back(i);
     }
     if (points.size() < 2) return section.first == section.last || section.last == 0;
-    const auto spline = geometry::fit_arc_spline(points, fit_options(section, points));
+    const auto spline = geometry::fit_arc_spline(points, fit_options(section, points, vertices));
     if (!spline) return false;
     append(*spline, section, points, vertices);
     return true;
   }
 
-  [[nodiscard]] geometry::ArcSplineOptions fit_options(const ArcSection& section,
-                                                       const std::vector<Point2>& points) const {
+  [[nodiscard]] geometry::ArcRunning running_beside(
+      const std::vector<Point2>& points, const std::vector<std::size_t>& vertices) const {
+    if (!takes_chords_off(options_)) return {};
+    FollowedPath path{
+        {0}, vertices, {}, RunChords(run_, options_.target->chords), options_.tolerance};
+    for (std::size_t i = 1; i < points.size(); ++i) {
+      path.places.push_back(path.places.back() + (points[i] - points[i - 1]).norm());
+    }
+    return running_of(options_, std::move(path));
+  }
+
+  [[nodiscard]] geometry::ArcSplineOptions fit_options(
+      const ArcSection& section, const std::vector<Point2>& points,
+      const std::vector<std::size_t>& vertices) const {
     geometry::ArcSplineOptions fit;
     fit.tolerance = (1 - kPlans.spline_chords) * options_.max_deviation;
+    fit.outside = (1 - kPlans.spline_chords) * options_.outside;
     fit.min_radius = options_.target->min_radius;
     fit.max_radius = options_.target->max_radius;
     fit.grid = arc_grid(options_);
     fit.effort = effort_;
+    fit.running = running_beside(points, vertices);
     const geometry::Vector2 first = points[1] - points[0];
     fit.direction = std::atan2(first.y(), first.x());
     if (section.tangent_start) fit.start_angle = angle_of(fair_.vertex_parameters[section.first]);

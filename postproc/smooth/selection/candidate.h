@@ -48,7 +48,8 @@ struct Candidate {
   RunText text;
   Figures figures;
   double max_curvature = 0;       // 1/mm, greatest of the curve that it was made of
-  bool chords_for_steps = false;  // see plan_lines
+  bool chords_for_steps = false;  // see OutputPlan
+  bool arcs_as_chords = false;
   std::vector<TimedPiece> moves;  // of a piece of a run, and in a RunMemo; empty otherwise
 };
 

@@ -49,6 +49,25 @@ TEST(ArcChords, AreSoMuchFartherAsTheirNumberIsRoundedDown) {
   EXPECT_LT(chord_error(grbl, arc_of(0.02, 120.029)), 0.0027);
 }
 
+TEST(ArcChords, AreCertainInNumberWhereNoLastDigitDecides) {
+  const ArcChords klipper{.longest = 1};
+  ASSERT_TRUE(certain_chords(klipper, arc_of(5, 90)));
+  EXPECT_EQ(certain_chords(klipper, arc_of(5, 90))->count, 7);
+  EXPECT_EQ(certain_chords(klipper, arc_of(5, 90))->off, 0);
+  EXPECT_EQ(certain_chords(klipper, arc_of(0.1, 90))->count, 1);
+  EXPECT_EQ(certain_chords({}, arc_of(5, 90))->count, 0);
+  const double eight = 8 / 5.0 * 180 / std::numbers::pi;
+  EXPECT_FALSE(certain_chords(klipper, arc_of(5, eight)));
+  EXPECT_FALSE(certain_chords(klipper, arc_of(5, eight * 1.00001)));
+  EXPECT_EQ(certain_chords(klipper, arc_of(5, eight * 1.0001))->count, 8);
+  EXPECT_EQ(certain_chords(klipper, arc_of(5, eight * 0.9999))->count, 7);
+  const ArcChords turned{.error = 0.002, .turned = 12};
+  EXPECT_NEAR(certain_chords(turned, arc_of(0.02, 120.029))->off +
+                  0.02 * (1 - std::cos(120.029 * std::numbers::pi / 360 /
+                                       certain_chords(turned, arc_of(0.02, 120.029))->count)),
+              chord_error(turned, arc_of(0.02, 120.029)), 1e-12);
+}
+
 // A full circle from (x, y) about the centre (x + i, y + j), counterclockwise.
 geometry::Arc circle_at(double x, double y, double i, double j, double turn) {
   const geometry::Point3 start(x, y, 0);
@@ -122,6 +141,7 @@ TEST(ArcChords, AreNoFartherThanTheBoundOnRealFirmware) {
                               {"klipper_1.0", find_control("klipper")->chords},
                               {"klipper_0.1", {.longest = 0.1}}};
   std::size_t compared = 0;
+  std::size_t counted = 0;
   for (const FirmwareArc& at : arcs) {
     const geometry::Arc arc = arc_of(std::stod(at.at("radius_mm")), std::stod(at.at("sweep_deg")),
                                      std::stod(at.at("dz_mm")));
@@ -131,12 +151,18 @@ TEST(ArcChords, AreNoFartherThanTheBoundOnRealFirmware) {
       if (is_circle(at) || error == "-") continue;
       const double bound = chord_error(row.chords, arc);
       const std::string& line = at.at("line");
+      if (const auto certain = certain_chords(row.chords, arc)) {
+        EXPECT_EQ(certain->count, std::stoi(at.at(row.firmware + "_chords")))
+            << row.firmware << ": " << line;
+        ++counted;
+      }
       EXPECT_GE(bound, std::stod(error) - kPrinted) << row.firmware << ": " << line;
       EXPECT_LE(bound, 1.3 * std::stod(error) + kPrinted) << row.firmware << ": " << line;
       ++compared;
     }
   }
   EXPECT_GT(compared, 2000U);
+  EXPECT_GT(counted, compared * 9 / 10);
 }
 
 // Every full circle that was lost, and on Klipper no other.

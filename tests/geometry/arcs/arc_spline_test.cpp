@@ -274,6 +274,84 @@ TEST(ArcSpline, HoldsTheBandOfNoisyRandomPaths) {
   }
 }
 
+// As grbl runs an arc: in equal chords, as many as fit where each is off by so much.
+constexpr double kAimedAt = 0.002;
+
+double chord_count(double radius, double sweep) {
+  const double half = std::sqrt(kAimedAt * (2 * radius - kAimedAt));
+  return std::max(1.0, std::floor(sweep * radius / 2 / half));
+}
+
+double run_off(double radius, double sweep, double /*length*/) {
+  return radius * (1 - std::cos(sweep / chord_count(radius, sweep) / 2));
+}
+
+Path run_path(const ArcSpline& spline) {
+  Path run;
+  for (const PathPiece& piece : path_of(spline)) {
+    const auto* arc = std::get_if<Arc>(&piece);
+    const double chords = arc == nullptr ? 1 : chord_count(radius_of(*arc), std::abs(arc->sweep));
+    for (int k = 0; k < static_cast<int>(chords); ++k) {
+      run.push_back(Line{point_at(piece, k / chords), point_at(piece, (k + 1) / chords)});
+    }
+  }
+  return run;
+}
+
+std::vector<double> run_off(const ArcSpline& spline) {
+  std::vector<double> off;
+  for (const ArcSplinePiece& piece : spline.pieces) {
+    const PlaneArc& arc = piece.arc;
+    off.push_back(arc.is_line() ? 0 : run_off(arc.radius, std::abs(arc.sweep), arc.length()));
+  }
+  return off;
+}
+
+class RunArcs : public testing::Test {
+ protected:
+  static constexpr double kWhole = 0.01;
+  const std::vector<Point2> points_ =
+      along([](double u) { return Point2(u, 3 * std::sin(u / 4)); }, 0, 40, 160);
+
+  // Nothing is said of how they are run where `error` is 0.
+  [[nodiscard]] ArcSpline spline(double error) const {
+    ArcSplineOptions options = options_for(points_);
+    options.tolerance = kWhole - 1.25 * kAimedAt;
+    if (error > 0) {
+      options.running.error = [](double r, double sweep, double length) {
+        return ArcRunning::Error{run_off(r, sweep, length)};
+      };
+      options.running.room = [error](double, double) {
+        return ArcRunning::Room{kWhole, kWhole, error};
+      };
+    }
+    auto found = fit_arc_spline(points_, options);
+    EXPECT_TRUE(found);
+    expect_sound(*found, points_, options);
+    return *found;
+  }
+
+  [[nodiscard]] Verdict verdict_on(const ArcSpline& spline) const {
+    return compare_paths(path_of(points_), run_path(spline), kWhole).verdict;
+  }
+};
+
+TEST_F(RunArcs, StayInTheBandWithWhatRunsThem) {
+  const ArcSpline without = spline(0);
+  const ArcSpline with = spline(1);
+  EXPECT_NE(verdict_on(without), Verdict::kProved);
+  EXPECT_EQ(verdict_on(with), Verdict::kProved);
+  EXPECT_LE(with.pieces.size(), 1.3 * static_cast<double>(without.pieces.size()));
+}
+
+TEST_F(RunArcs, AreRunNoWorseThanTheyMayBe) {
+  constexpr double kMost = 1.2 * kAimedAt;
+  EXPECT_GT(std::ranges::max(run_off(spline(1))), kMost);
+  const ArcSpline found = spline(kMost);
+  EXPECT_LE(std::ranges::max(run_off(found)), kMost);
+  EXPECT_LE(found.pieces.size(), 1.6 * static_cast<double>(spline(0).pieces.size()));
+}
+
 TEST(ArcSpline, TurnedByARightAngleItIsTheSameSpline) {
   const auto points = along([](double u) { return Point2(u, 4 * std::sin(u / 5)); }, 0, 40, 200);
   std::vector<Point2> turned;

@@ -11,8 +11,9 @@ namespace {
 
 using std::numbers::pi;
 constexpr double kTolerance = 0.01;
+constexpr ArcSides kSides{kTolerance, kTolerance};
 
-PlaneBand::Limits limits() { return {kTolerance, 1 / 0.05, 3.0}; }
+PlaneBand::Limits limits() { return {kTolerance, kTolerance, 1 / 0.05, 3.0}; }
 
 // Points of a circle about the origin, from (radius, 0) counter-clockwise.
 std::vector<Point2> on_circle(double radius, int count, double angle) {
@@ -101,7 +102,8 @@ TEST(PlaneBand, AnArcWithinTheToleranceIsPassed) {
   for (const double off : offs) {
     const double radius = 20 + off;
     const BandEntry entry{{radius, 0}, {0, 1}, 1};
-    EXPECT_EQ(band.passed(entry, arc_about_origin(radius, 2.5)), band.samples().size()) << off;
+    EXPECT_EQ(band.passed(entry, arc_about_origin(radius, 2.5), kSides), band.samples().size())
+        << off;
   }
 }
 
@@ -110,13 +112,38 @@ TEST(PlaneBand, AnArcBeyondTheToleranceIsNot) {
   for (const double off : {0.0102, -0.0102}) {
     const double radius = 20 + off;
     const BandEntry entry{{radius, 0}, {0, 1}, 1};
-    EXPECT_FALSE(band.passed(entry, arc_about_origin(radius, 2.5))) << off;
+    EXPECT_FALSE(band.passed(entry, arc_about_origin(radius, 2.5), kSides)) << off;
+  }
+}
+
+// What is farther from the centre may be less far off.
+TEST(PlaneBand, ThePathMayBeOffByAnotherDistanceOnEachSide) {
+  constexpr ArcSides kSome{0.004, kTolerance};
+  for (const double turn : {1.0, -1.0}) {
+    std::vector<Point2> points = on_circle(20, 200, 2.5);
+    for (Point2& point : points) point.y() *= turn;
+    PlaneBand::Limits some = limits();
+    some.outside = kSome.outside;
+    const PlaneBand band(points, some);
+    for (const double off : {-0.0045, -0.0035, 0.009, 0.0105}) {
+      const double radius = 20 + off;
+      const BandEntry entry{{radius, 0}, {0, turn}, 1};
+      const PlaneArc arc = arc_with_sweep(
+          {radius, 0}, {radius * std::cos(2.5), turn * radius * std::sin(2.5)}, turn * 2.5, 1e4);
+      const bool fits = -kSome.outside < off && off < kSome.inside;
+      EXPECT_EQ(band.passed(entry, arc, kSome).has_value(), fits) << off << " " << turn;
+      const ArcFan fan = band.fan(entry);
+      const double curvature = turn / radius;
+      const bool in_fan = fan.size() + 1 == band.samples().size() && fan.back().low <= curvature &&
+                          curvature <= fan.back().high;
+      EXPECT_EQ(in_fan, fits) << off << " " << turn;
+    }
   }
 }
 
 TEST(PlaneBand, AnArcThatEndsHalfWayPassesWhatLiesBeforeIt) {
   const PlaneBand band(on_circle(20, 200, 2.5), limits());
-  const auto passed = band.passed({{20, 0}, {0, 1}, 1}, arc_about_origin(20, 1.25));
+  const auto passed = band.passed({{20, 0}, {0, 1}, 1}, arc_about_origin(20, 1.25), kSides);
   ASSERT_TRUE(passed);
   EXPECT_NEAR(band.samples()[*passed].station, 25, 0.3);
 }
@@ -125,7 +152,7 @@ TEST(PlaneBand, AnArcThatEndsHalfWayPassesWhatLiesBeforeIt) {
 TEST(PlaneBand, ALineDoesNotPassAPathThatGoesBack) {
   const std::vector<Point2> points = {{0, 0}, {6, 0}, {5, 0.001}, {10, 0}};
   const PlaneBand band(points, limits());
-  EXPECT_FALSE(band.passed({{0, 0}, {1, 0}, 1}, {{0, 0}, {10, 0}}));
+  EXPECT_FALSE(band.passed({{0, 0}, {1, 0}, 1}, {{0, 0}, {10, 0}}, kSides));
 }
 
 // Half a circle over one straight edge: both ends are right, the middle is not.
@@ -133,9 +160,9 @@ TEST(PlaneBand, AnArcThatBulgesFromALongEdgeIsNotPassed) {
   const std::vector<Point2> points = {{0, 0}, {1, 0}};
   const PlaneBand band(points, limits());
   const PlaneArc arc = arc_with_sweep({0, 0}, {1, 0}, 0.2, 1e4);  // sagitta 0.025
-  EXPECT_FALSE(band.passed({{0, 0}, unit_vector(-0.1), 1}, arc));
+  EXPECT_FALSE(band.passed({{0, 0}, unit_vector(-0.1), 1}, arc, kSides));
   const PlaneArc flat = arc_with_sweep({0, 0}, {1, 0}, 0.06, 1e4);  // sagitta 0.0075
-  EXPECT_TRUE(band.passed({{0, 0}, unit_vector(-0.03), 1}, flat));
+  EXPECT_TRUE(band.passed({{0, 0}, unit_vector(-0.03), 1}, flat, kSides));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "gcode/control/control.h"
+#include "gcode/controls/arc_rules.h"
 #include "gcode/controls/built_in.h"
 #include "tests/support/wavy_programs.h"
 
@@ -171,21 +172,25 @@ TEST(AProfile, SplitsArcsAtTheAxesOfThePlane) {
   EXPECT_GE(arcs, 4U);
 }
 
-TEST(AProfile, OfAControlThatCutsArcsCoarselyGetsLines) {
+TEST(AProfile, OfAControlThatCutsArcsCoarselyGetsMoreAndShorterMoves) {
   const std::string text = program({.noise = 0.003}, "G21");
   const gcode::Control& klipper = *gcode::find_control("klipper");
-  const auto arcs_in = [&text](const gcode::Control& target) {
-    const std::vector<std::string> lines = lines_of(smoothed_for(target, text).text);
-    return std::ranges::count_if(lines, [](const std::string& line) {
-      return line.starts_with("G2 ") || line.starts_with("G3 ");
-    });
+  const auto moves_for = [&text](const gcode::Control& target) {
+    const ReadText read(smoothed_for(target, text).text);
+    std::size_t arcs = 0;
+    for (const gcode::Motion& motion : read.meaning.motions) {
+      if (motion.piece.arc() == nullptr) continue;
+      ++arcs;
+      EXPECT_LE(gcode::chord_error(target.chords, *motion.piece.arc()), 0.02);
+    }
+    EXPECT_GT(arcs, 3U);
+    return read.meaning.motions.size();
   };
   gcode::Control fine = klipper;
   fine.chords = {.longest = 0.1};  // resolution: 0.1
   // The wave's tightest bends have a radius of 4.1 mm: chords of 1 mm leave them by 0.03 mm, chords
   // of 0.1 mm by 0.0003 mm.
-  EXPECT_GT(arcs_in(fine), 3);
-  EXPECT_LT(arcs_in(klipper), arcs_in(fine));
+  EXPECT_GT(moves_for(klipper), moves_for(fine));
 }
 
 }  // namespace
