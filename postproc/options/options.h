@@ -89,6 +89,9 @@ struct SmoothOptions {
   ProfileWords words;    // that a profile adds; its target is `target`
   std::string profile;   // the profile's file, for reports; empty: none
   int threads = 0;       // 0: all cores
+  // Runs of one shape are smoothed once in a part (postproc/smooth/repeated_runs.h). Each by itself
+  // comes out the same to within the rounding of what is computed.
+  bool once_for_repeats = true;
   bool quick = false;    // less effort for few moves, all forms from the same curves: for a survey
 };
 

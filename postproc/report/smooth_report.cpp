@@ -51,7 +51,8 @@ Json json_of(const SmoothOptions& options, bool strict) {
   // it, in Options of api/include/batten/batten.h and `inner` of api/batten.cpp.
   const auto& [target, machine, tolerance_mm, tolerance_inch, tolerance_kind, side, units, source,
                decimals, method, output, prefer, linearize, keep_corners_deg, allowed, own_words,
-               subprograms, keep_expressions, convert, words, profile, threads, quick] = options;
+               subprograms, keep_expressions, convert, words, profile, threads, once_for_repeats,
+               quick] = options;
   Json json = {
       {"target", target->name}, {"machine", machine->name}, {"tolerance_mm", tolerance_mm}};
   if (tolerance_inch) json["tolerance_inch"] = *tolerance_inch;

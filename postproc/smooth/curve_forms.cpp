@@ -184,6 +184,7 @@ class CurveForms {
     candidate->max_curvature = bends_.greatest();
     candidate->figures.distance =
         std::hypot(setting_.meant.distance_of(plan->moves, curve_.path), facts().scale.printed);
+    if (task_.scope == CandidateScope::kToRepeat) candidate->plan = plan;
     return candidate;
   }
 
@@ -262,7 +263,7 @@ class CurveForms {
   // come out as fewer moves that take no longer.
   [[nodiscard]] bool arcs_may_serve() const {
     const std::size_t vertices = task_.run.points.size();
-    const bool choosing = task_.scope == CandidateScope::kToChoose &&
+    const bool choosing = task_.scope != CandidateScope::kAll &&
                           task_.options.output == Form::kAuto && task_.run.arcs.empty();
     if (!choosing || vertices < kFormTuning.tried_from) return true;
     for (const double part : kFormTuning.tried_at) {

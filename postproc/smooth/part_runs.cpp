@@ -4,6 +4,7 @@
 #include <atomic>
 #include <iterator>
 #include <mutex>
+#include <numeric>
 #include <string>
 #include <utility>
 #include <variant>
@@ -15,6 +16,7 @@
 #include "postproc/runs/run_cutting.h"
 #include "postproc/runs/run_grouping.h"
 #include "postproc/runs/run_path.h"
+#include "postproc/smooth/repeated_runs.h"
 #include "postproc/smooth/run_smoother.h"
 #include "postproc/smooth/selection/candidate_bounds.h"
 #include "postproc/smooth/selection/run_times.h"
@@ -196,29 +198,75 @@ class PartSmoother {
     runs_.notes = std::move(notes);
   }
 
+  // Those first that others repeat, or none.
   bool smooth_works(const std::vector<std::size_t>& works) {
+    std::vector<std::size_t> firsts(works.size());
+    std::iota(firsts.begin(), firsts.end(), std::size_t{0});
+    const bool once = options_.once_for_repeats && memos_ == nullptr;
+    if (once) firsts = firsts_of_shapes(in_context(works), options_);
+    std::vector<bool> is_repeated(works.size());
+    std::vector<std::size_t> shapes;
+    std::vector<std::size_t> repeats;
+    for (std::size_t i = 0; i < works.size(); ++i) {
+      (firsts[i] == i ? shapes : repeats).push_back(i);
+      if (firsts[i] != i) is_repeated[firsts[i]] = true;
+    }
     std::atomic<bool> stopped = false;
-    std::mutex reporting;
-    const auto one = [&](std::size_t i) {
+    parallel_for(options_.threads, shapes.size(), [&](std::size_t i) {
       if (stopped) return;
-      RunState& work = runs_.works[works[i]];
+      RunState& work = runs_.works[works[shapes[i]]];
       RunMemo* memo = memos_ != nullptr ? &memos_->of(runs_.sections[work.section]) : nullptr;
-      work.smoothed =
-          smooth_run(run_of(work), work.context, options_, CandidateScope::kToChoose, memo);
-      work.selection = choose(work.smoothed, options_);
-      if (memos_ == nullptr && options_.method != Method::kNone) {
-        work.outlook = outlook_of(work.smoothed, options_);
-        work.outlook.at_feeds_s = time_at_feeds(run_of(work), *options_.machine);
-      }
-      work.drop_what_is_not_written();
-      const std::scoped_lock lock(reporting);
-      smoothed_points_ += run_of(work).points.size();
-      const double part =
-          std::min(1.0, static_cast<double>(smoothed_points_) / static_cast<double>(2 * points_));
-      if (!progress_(part)) stopped = true;
-    };
-    parallel_for(options_.threads, works.size(), one);
+      const auto scope =
+          is_repeated[shapes[i]] ? CandidateScope::kToRepeat : CandidateScope::kToChoose;
+      work.smoothed = smooth_run(run_of(work), work.context, options_, scope, memo);
+      if (!is_repeated[shapes[i]]) choose_for(work);
+      if (!has_smoothed(work)) stopped = true;
+    });
+    parallel_for(options_.threads, repeats.size(), [&](std::size_t i) {
+      if (stopped) return;
+      RunState& work = runs_.works[works[repeats[i]]];
+      const RunState& first = runs_.works[works[firsts[repeats[i]]]];
+      const auto offset = offset_of_repeat(in_context(first), in_context(work), options_);
+      auto smoothed =
+          smooth_repeat(run_of(work), work.context, options_, first.smoothed, offset.value());
+      work.smoothed = smoothed ? std::move(*smoothed)
+                               : smooth_run(run_of(work), work.context, options_,
+                                            CandidateScope::kToChoose);
+      choose_for(work);
+      if (!has_smoothed(work)) stopped = true;
+    });
+    for (const std::size_t i : shapes) {
+      if (is_repeated[i]) choose_for(runs_.works[works[i]]);
+    }
     return !stopped;
+  }
+
+  void choose_for(RunState& work) {
+    work.selection = choose(work.smoothed, options_);
+    if (memos_ == nullptr && options_.method != Method::kNone) {
+      work.outlook = outlook_of(work.smoothed, options_);
+      work.outlook.at_feeds_s = time_at_feeds(run_of(work), *options_.machine);
+    }
+    work.drop_what_is_not_written();
+  }
+
+  // False: the work is to stop.
+  bool has_smoothed(const RunState& work) {
+    const std::scoped_lock lock(reporting_);
+    smoothed_points_ += run_of(work).points.size();
+    return progress_(
+        std::min(1.0, static_cast<double>(smoothed_points_) / static_cast<double>(2 * points_)));
+  }
+
+  [[nodiscard]] RunInContext in_context(const RunState& work) const {
+    return {&run_of(work), &work.context};
+  }
+
+  [[nodiscard]] std::vector<RunInContext> in_context(const std::vector<std::size_t>& works) const {
+    std::vector<RunInContext> runs;
+    runs.reserve(works.size());
+    for (const std::size_t work : works) runs.push_back(in_context(runs_.works[work]));
+    return runs;
   }
 
   // Replaces runs that would be kept as a whole by pieces: their parts differ. Returns the works
@@ -282,6 +330,7 @@ class PartSmoother {
   const ProgressCallback& progress_;
   PartRuns& runs_;
   RunMemos* memos_;
+  std::mutex reporting_;
   std::size_t points_ = 0;           // of all runs
   std::size_t smoothed_points_ = 0;  // pieces count again
 };

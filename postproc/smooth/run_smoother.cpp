@@ -8,6 +8,7 @@
 #include "gcode/state/reason.h"
 #include "postproc/runs/run_path.h"
 #include "postproc/smooth/curve_forms.h"
+#include "postproc/smooth/repeated_runs.h"
 
 namespace batten::postproc {
 
@@ -268,6 +269,33 @@ SmoothedRun smooth_run(const Run& run, const RunContext& context, const SmoothOp
   return result;
 }
 
+std::optional<SmoothedRun> smooth_repeat(const Run& run, const RunContext& context,
+                                         const SmoothOptions& options, const SmoothedRun& first,
+                                         const geometry::Vector3& offset) {
+  const RunTimes times(context, *options.machine);
+  SmoothedRun result;
+  result.facts = facts_of(run, context, options, times);
+  result.facts.noise = first.facts.noise;
+  result.facts.fair_curvature = first.facts.fair_curvature;
+  result.facts.scale.original.distance = first.facts.scale.original.distance;
+  result.facts.scale.known = first.facts.scale.known;
+  result.reason = first.reason;
+  result.left_out = first.left_out;
+  result.passed_over = first.passed_over;
+  const RunTask task{run, context, options};
+  for (const Candidate& there : first.candidates) {
+    const auto plan = there.plan ? translated(*there.plan, offset) : std::nullopt;
+    if (!plan) return std::nullopt;
+    auto here = make_candidate(task, times, *plan, result.facts);
+    if (!here) return std::nullopt;
+    here->method = there.method;
+    here->max_curvature = there.max_curvature;
+    here->figures.distance = there.figures.distance;
+    result.candidates.push_back(std::move(*here));
+  }
+  return result;
+}
+
 std::vector<TimedPiece> chain_with(const CutRun& cut, std::span<const RunState> pieces) {
   std::vector<TimedPiece> chain;
   chain.reserve(cut.run.points.size());
@@ -358,6 +386,7 @@ void RunState::start_again(const Run& run, const SmoothOptions& options) {
 
 void RunState::drop_what_is_not_written() {
   for (std::size_t i = 0; i < smoothed.candidates.size(); ++i) {
+    smoothed.candidates[i].plan.reset();
     if (std::ranges::find(selection.order, i) != selection.order.end()) continue;
     smoothed.candidates[i].text.text = {};
     smoothed.candidates[i].moves = {};

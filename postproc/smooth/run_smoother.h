@@ -19,6 +19,13 @@ namespace batten::postproc {
                                      CandidateScope scope = CandidateScope::kToChoose,
                                      RunMemo* memo = nullptr);
 
+// The same for a repeat of a run that was smoothed with CandidateScope::kToRepeat, `offset` (mm) away
+// (postproc/smooth/repeated_runs.h). Nothing where a candidate of that cannot be said there.
+[[nodiscard]] std::optional<SmoothedRun> smooth_repeat(const Run& run, const RunContext& context,
+                                                       const SmoothOptions& options,
+                                                       const SmoothedRun& first,
+                                                       const geometry::Vector3& offset);
+
 // A section that may be rewritten, and what became of it.
 struct RunState {
   std::size_t section = 0;
@@ -36,7 +43,7 @@ struct RunState {
   void reject(std::string_view why);  // to its next candidate
   // Makes all candidates anew, also those that were left out: where none is left of the others.
   void start_again(const Run& run, const SmoothOptions& options);
-  // Texts and moves of candidates that were not chosen take room for nothing.
+  // Texts and moves of candidates that were not chosen take room for nothing, nor do plans.
   void drop_what_is_not_written();
 };
 

@@ -51,6 +51,7 @@ struct Candidate {
   bool chords_for_steps = false;  // see OutputPlan
   bool arcs_as_chords = false;
   std::vector<TimedPiece> moves;  // of a piece of a run, and in a RunMemo; empty otherwise
+  std::optional<OutputPlan> plan = {};  // where it is asked for (CandidateScope)
 };
 
 struct RunFacts {             // whether it is rewritten or not
@@ -70,8 +71,9 @@ struct SmoothedRun {
   bool passed_over = false;  // one that could not gain was not made
 };
 
-// Which candidates are made. Others are of use where the proof of the chosen one fails.
-enum class CandidateScope { kToChoose, kAll };
+// Which candidates are made. Others are of use where the proof of the chosen one fails. Of a run
+// that is repeated in other places the plans are kept.
+enum class CandidateScope { kToChoose, kToRepeat, kAll };
 
 // What was made of a run already, for options that differ in form, preference and effort only: they
 // ask for the same curves and plans over and over. The texts of its candidates are empty.

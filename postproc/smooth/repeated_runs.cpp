@@ -1,0 +1,144 @@
+#include "postproc/smooth/repeated_runs.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+#include <unordered_map>
+#include <utility>
+#include <variant>
+
+#include "gcode/control/control.h"
+
+namespace batten::postproc {
+namespace {
+
+using geometry::Point3;
+using geometry::Vector3;
+
+// mm: numbers of one step are the same, whatever was computed with them.
+constexpr double kSameNumber = 1e-7;
+
+bool is_same(double a, double b) { return std::abs(a - b) <= kSameNumber; }
+bool is_same(const Point3& a, const Point3& b) {
+  return (a - b).cwiseAbs().maxCoeff() <= kSameNumber;
+}
+
+void translate(geometry::PathPiece& piece, const Vector3& offset) {
+  if (auto* line = std::get_if<geometry::Line>(&piece)) {
+    line->start += offset;
+    line->end += offset;
+  } else if (auto* arc = std::get_if<geometry::Arc>(&piece)) {
+    arc->start += offset;
+    arc->end += offset;
+    arc->center += offset;
+  } else {
+    for (Point3& control : std::get<geometry::CubicBezier>(piece).control) control += offset;
+  }
+}
+
+bool is_same_arc(const RunArc& a, const RunArc& b, const Vector3& offset) {
+  return a.first == b.first && a.last == b.last && a.names_motion == b.names_motion &&
+         is_same(a.arc.center + offset, b.arc.center) && a.arc.axis == b.arc.axis &&
+         is_same(a.arc.sweep, b.arc.sweep);
+}
+
+bool are_same_moves(std::span<const TimedPiece> a, std::span<const TimedPiece> b,
+                    const Vector3& offset) {
+  return std::ranges::equal(a, b, [&](const TimedPiece& one, const TimedPiece& other) {
+    return one.feed == other.feed && one.rapid == other.rapid &&
+           one.piece.index() == other.piece.index() &&
+           is_same(geometry::start_point(one.piece) + offset, geometry::start_point(other.piece)) &&
+           is_same(geometry::point_at(one.piece, 0.5) + offset,
+                   geometry::point_at(other.piece, 0.5)) &&
+           is_same(geometry::end_point(one.piece) + offset, geometry::end_point(other.piece));
+  });
+}
+
+// Which motion, feed and speed hold is said by the text anew where it has to be.
+bool is_same_state(gcode::ModalState a, const gcode::ModalState& b) {
+  a.motion = b.motion;
+  a.feed = b.feed;
+  a.spindle_speed = b.spindle_speed;
+  return a == b;
+}
+
+bool may_repeat(RunInContext each) {
+  return each.run->comments.empty() && !each.context->of_neighbours;
+}
+
+// The same for runs of one shape: that of the vertices, seen from the first, in steps far above
+// what numbers differ by and off the places where printed numbers lie.
+std::uint64_t hash_of(const Run& run) {
+  constexpr double kStep = 1e-3;
+  constexpr double kBetween = 0.3717;
+  std::uint64_t hash = run.points.size();
+  const auto add = [&hash](std::int64_t value) {
+    hash = (hash ^ static_cast<std::uint64_t>(value)) * 0x9E3779B97F4A7C15U;
+    hash ^= hash >> 32U;
+  };
+  for (const Point3& point : run.points) {
+    const Vector3 from = point - run.points.front();
+    for (const double part : from) {
+      add(static_cast<std::int64_t>(std::floor(part / kStep + kBetween)));
+    }
+  }
+  return hash;
+}
+
+}  // namespace
+
+std::optional<Vector3> offset_of_repeat(RunInContext first, RunInContext run,
+                                        const SmoothOptions& options) {
+  const Run& a = *first.run;
+  const Run& b = *run.run;
+  const RunContext& before = *first.context;
+  const RunContext& now = *run.context;
+  if (!may_repeat(first) || !may_repeat(run) || a.points.size() != b.points.size() ||
+      a.arcs.size() != b.arcs.size() || a.decimals != b.decimals || a.closed != b.closed ||
+      !is_same_state(before.before, now.before) || !is_same_state(before.after, now.after) ||
+      before.numbers.first.has_value() != now.numbers.first.has_value()) {
+    return std::nullopt;
+  }
+  const Vector3 offset = b.points.front() - a.points.front();
+  const gcode::Units units = now.before.units;
+  const double step = gcode::printed_step(place_format(*options.target, units), units);
+  const auto is_step = [step](double part) {
+    return std::abs(part - step * std::round(part / step)) <= kSameNumber;
+  };
+  const bool same =
+      is_step(offset.x()) && is_step(offset.y()) && is_step(offset.z()) &&
+      std::ranges::equal(a.points, b.points,
+                         [&](const Point3& p, const Point3& q) { return is_same(p + offset, q); }) &&
+      std::ranges::equal(a.arcs, b.arcs,
+                         [&](const RunArc& p, const RunArc& q) {
+                           return is_same_arc(p, q, offset);
+                         }) &&
+      std::ranges::equal(a.feeds, b.feeds,
+                         [](const FeedFrom& p, const FeedFrom& q) {
+                           return p.vertex == q.vertex && p.feed == q.feed;
+                         }) &&
+      are_same_moves(before.lead, now.lead, offset) && are_same_moves(before.tail, now.tail, offset);
+  return same ? std::optional(offset) : std::nullopt;
+}
+
+std::vector<std::size_t> firsts_of_shapes(std::span<const RunInContext> runs,
+                                          const SmoothOptions& options) {
+  std::vector<std::size_t> firsts(runs.size());
+  std::iota(firsts.begin(), firsts.end(), std::size_t{0});
+  std::unordered_map<std::uint64_t, std::size_t> first_with;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    if (!may_repeat(runs[i])) continue;
+    const std::size_t first = first_with.try_emplace(hash_of(*runs[i].run), i).first->second;
+    if (first != i && offset_of_repeat(runs[first], runs[i], options)) firsts[i] = first;
+  }
+  return firsts;
+}
+
+std::optional<OutputPlan> translated(OutputPlan plan, const Vector3& offset) {
+  if (!plan.curves.empty()) return std::nullopt;
+  for (PlannedMove& move : plan.moves) translate(move.piece, offset);
+  return plan;
+}
+
+}  // namespace batten::postproc
