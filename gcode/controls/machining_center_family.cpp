@@ -109,7 +109,7 @@ std::vector<Control> machining_center_family() {
       {210, "no millimetre word on NUM (axes of programming), whose units are G70 and G71"}};
 
   Control philips = machining_center(
-      "philips", "Philips 432, 532 (Maho): arcs by R and helices in G17, G18, G19; G70 and G71", 0);
+      "philips", "Philips 432, 532 (Maho): arcs by R in G17, G18, G19; G70 and G71", 0);
   philips.decimal_point = false;
   philips.helices = false;
   write_arcs_by_radius(philips);

@@ -152,7 +152,8 @@ constexpr Explanation kExplanations[] = {
      "nothing begins at them.",
      true},
 
-    {kTooShort, "Fewer motions in a row than a run needs.", "--min-points lowers the number."},
+    {kTooShort, "Fewer motions in a row than a run needs.",
+     "Nothing: so few motions have little to win."},
     {kNoGain, "The new form was not clearly faster, smaller, nearer to the path or smoother.",
      "batten explore shows what other tolerances, forms and preferences would give."},
     {kSlower, "The new form would take more time on the machine.", "A larger tolerance may help."},

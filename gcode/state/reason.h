@@ -69,7 +69,7 @@ inline constexpr std::string_view kLoopBody = "loop-body";
 inline constexpr std::string_view kCallerModes = "caller-modes";
 
 // --- a run that was tried and went back -----------------------------------------------------
-inline constexpr std::string_view kTooShort = "too-short";  // fewer motions than --min-points
+inline constexpr std::string_view kTooShort = "too-short";  // fewer motions than a run needs
 inline constexpr std::string_view kNoGain = "no-gain";
 inline constexpr std::string_view kSlower = "slower";
 inline constexpr std::string_view kLarger = "larger";

@@ -172,10 +172,6 @@ void append_crossings(const Arc& arc, const Vector3& quadrant_from, std::vector<
   for (double at = first; at < length - kSameAngle; at += kQuarter) found.push_back(at);
 }
 
-}  // namespace
-
-namespace {
-
 // An arc to the left has what is farther from its centre on the right.
 double outside_of(const PlaneArc& arc, const ArcRunning::Room& room) {
   return arc.sweep > 0 ? room.right : room.left;

@@ -7,7 +7,6 @@
 #include <string_view>
 
 #include "gcode/text/characters.h"
-#include "gcode/text/source_text.h"
 #include "postproc/machine/files/machine_file.h"
 #include "postproc/machine/files/settings_file.h"
 
@@ -106,12 +105,8 @@ class WordFile {
 
 std::shared_ptr<const Machine> machine_of_words(const std::string& file, const WordRules& rules,
                                                 std::vector<std::string>& problems) {
-  std::string error;
-  const auto text = gcode::SourceText::map_file(file, error);
-  if (!text) {
-    problems.push_back(error);
-    return nullptr;
-  }
+  const auto text = mapped_file(file, problems);
+  if (!text) return nullptr;
   const WordFile words(text->text(), file);
   const bool any = std::ranges::any_of(
       rules.of_axes, [&](const AxisWord& word) { return words.has(word.command); });

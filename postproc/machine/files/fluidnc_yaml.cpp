@@ -5,7 +5,6 @@
 #include <string_view>
 #include <utility>
 
-#include "gcode/text/source_text.h"
 #include "postproc/machine/files/machine_file.h"
 #include "postproc/machine/files/settings_file.h"
 
@@ -53,12 +52,8 @@ class YamlFile {
 
 std::shared_ptr<const Machine> read_fluidnc_yaml(const std::string& file,
                                                  std::vector<std::string>& problems) {
-  std::string error;
-  const auto text = gcode::SourceText::map_file(file, error);
-  if (!text) {
-    problems.push_back(error);
-    return nullptr;
-  }
+  const auto text = mapped_file(file, problems);
+  if (!text) return nullptr;
   const YamlFile yaml(text->text(), file);
   SettingTaker taker(file, problems);
   Machine machine = machine_like("router", "FluidNC", file);

@@ -8,7 +8,6 @@
 #include <memory>
 #include <utility>
 
-#include "gcode/text/source_text.h"
 
 namespace batten::postproc {
 namespace {
@@ -73,13 +72,17 @@ bool SectionFile::has_section(std::string_view section) const {
   return std::ranges::find(sections_, section) != sections_.end();
 }
 
-void SectionFile::read(const std::string& file) {
+std::optional<gcode::SourceText> mapped_file(const std::string& file,
+                                             std::vector<std::string>& problems) {
   std::string error;
-  const auto source = gcode::SourceText::map_file(file, error);
-  if (!source) {
-    problems_.push_back(error);
-    return;
-  }
+  auto source = gcode::SourceText::map_file(file, error);
+  if (!source) problems.push_back(error);
+  return source;
+}
+
+void SectionFile::read(const std::string& file) {
+  const auto source = mapped_file(file, problems_);
+  if (!source) return;
   being_read_.push_back(fs::weakly_canonical(file));
   for_each_line(source->text(),
                 [&](std::string_view line, std::size_t number) { read_line(line, file, number); });

@@ -9,10 +9,15 @@
 #include <string_view>
 #include <vector>
 
+#include "gcode/text/source_text.h"
 #include "postproc/machine/machine.h"
 #include "postproc/machine/machine_fields.h"
 
 namespace batten::postproc {
+
+// Nothing where it cannot be read, which is said then.
+[[nodiscard]] std::optional<gcode::SourceText> mapped_file(const std::string& file,
+                                                           std::vector<std::string>& problems);
 
 struct SettingEntry {
   std::string section;

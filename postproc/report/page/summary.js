@@ -40,8 +40,9 @@ function gain(before, after, digits) {
 
 // One figure before and after. `text`: of a value.
 function pairTile(title, names, values, text, unit, note, digits) {
-  return tile(title, [figure(names[0], values[0], text(values[0])), ' \u2192 ', figure(names[1], values[1], text(values[1]) + unit)],
-    [gain(...values, digits), note], twoBars(...values));
+  const [before, after] = values.map(text);
+  return tile(title, [figure(names[0], values[0], before), ' \u2192 ', figure(names[1], values[1], after + unit)],
+    [gain(values[0], before === after ? values[0] : values[1], digits), note], twoBars(...values));
 }
 
 function facts(pairs) {

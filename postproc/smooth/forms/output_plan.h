@@ -110,11 +110,11 @@ inline constexpr PlanTuning kPlans;
 
 // Arcs in a plane that the target takes arcs in and that the run lies in, the active plane first. A
 // run in space: helices and lines in the plane that needs the fewest, where they are fewer than the
-// run's motions, and none is a helix where the target takes none. Nothing when no plane serves. Arcs that the
-// target would refuse are chords already, and so are those that with the target's own chords would
-// be farther from the run than `tolerance`, or that these leave more than those of the arcs that
-// the run has there and than the target itself aims at. Comments are placed by the length along the
-// moves, which may be one short move off. `bends`: of the curve.
+// run's motions, and none is a helix where the target takes none. Nothing when no plane serves.
+// Arcs that the target would refuse are chords already, and so are those that with the target's own
+// chords would be farther from the run than `tolerance`, or that these leave more than those of the
+// arcs that the run has there and than the target itself aims at. Comments are placed by the length
+// along the moves, which may be one short move off. `bends`: of the curve.
 [[nodiscard]] std::optional<OutputPlan> plan_arcs(const Run& run, const geometry::SmoothCurve& fair,
                                                   const geometry::MarkedPieces& pieces,
                                                   const CurvatureProfile& bends,
