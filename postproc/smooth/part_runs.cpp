@@ -16,6 +16,7 @@
 #include "postproc/runs/run_cutting.h"
 #include "postproc/runs/run_grouping.h"
 #include "postproc/runs/run_path.h"
+#include "postproc/smooth/growth.h"
 #include "postproc/smooth/repeated_runs.h"
 #include "postproc/smooth/run_smoother.h"
 #include "postproc/smooth/selection/candidate_bounds.h"
@@ -181,6 +182,7 @@ class PartSmoother {
     const std::vector<std::size_t> pieces = cut_runs();
     if (!smooth_works(pieces)) return false;
     for (CutRun& cut : runs_.cut_runs) revert_costly_pieces(cut, runs_.works, options_);
+    if (!part_.window) revert_growth(runs_.works, runs_.cut_runs, options_);
     return true;
   }
 
@@ -229,9 +231,9 @@ class PartSmoother {
       const auto offset = offset_of_repeat(in_context(first), in_context(work), options_);
       auto smoothed =
           smooth_repeat(run_of(work), work.context, options_, first.smoothed, offset.value());
-      work.smoothed = smoothed ? std::move(*smoothed)
-                               : smooth_run(run_of(work), work.context, options_,
-                                            CandidateScope::kToChoose);
+      work.smoothed =
+          smoothed ? std::move(*smoothed)
+                   : smooth_run(run_of(work), work.context, options_, CandidateScope::kToChoose);
       choose_for(work);
       if (!has_smoothed(work)) stopped = true;
     });

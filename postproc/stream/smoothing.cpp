@@ -175,9 +175,11 @@ class Smoothing {
     if (!read()) return refused();
     while (true) {
       const WindowOutcome outcome = smooth_all();
-      if (outcome == WindowOutcome::kDone && !copy_where_parts_cross()) return finished();
+      const bool worse = outcome == WindowOutcome::kDone && is_worse_as_a_whole();
+      if (outcome == WindowOutcome::kDone && !worse && !copy_where_parts_cross()) return finished();
       if (outcome == WindowOutcome::kStopped || !sink_.restart()) return refused();
-      if (outcome == WindowOutcome::kNotProvedAlone && !read_as_one_window()) return refused();
+      const bool as_one = outcome == WindowOutcome::kNotProvedAlone || worse;
+      if (as_one && !read_as_one_window()) return refused();
     }
   }
 
@@ -264,6 +266,7 @@ class Smoothing {
   // Window by window, from the begin of the program on.
   WindowOutcome smooth_all() {
     collected_.emplace(facts_);
+    sums_ = {};
     known_ = known_at_begin();
     guess_.emplace();
     crossings_.reset();
@@ -329,6 +332,7 @@ class Smoothing {
     if (!crossings_) crossings_.emplace(made.near, options_.tolerance_mm);
     crossings_->take(std::move(made.proof.near_edges));
     crossings_->look_up_to(made.last_line);
+    sums_ += made.sums;
     collected_->take(std::move(made));
     return WindowOutcome::kDone;
   }
@@ -352,6 +356,11 @@ class Smoothing {
       begin.says_smoothed = made.before.says_smoothed;
     }
     return same_before(made.before, begin);
+  }
+
+  // Windows know nothing of each other; the whole reverts what is not worth it by itself.
+  [[nodiscard]] bool is_worse_as_a_whole() const {
+    return !setting_.whole && is_worse(sums_, options_);
   }
 
   // Whether parts of long runs cross each other where they did not: then more is to be copied.
@@ -385,6 +394,7 @@ class Smoothing {
   // Of the windows that were taken.
   std::atomic<WindowOutcome> outcome_ = WindowOutcome::kDone;
   NewTextBefore known_;  // after them
+  PartSums sums_;
   std::optional<StartGuess> guess_;
   std::optional<PartCrossings> crossings_;
   std::optional<ProgramTimer> old_time_;

@@ -117,6 +117,7 @@ class WindowWork {
       if (!work.cut_run) done.outlook += work.outlook;
     }
     for (const CutRun& cut : runs.cut_runs) done.outlook += cut.outlook;
+    if (!setting_.survey) done.sums = sums_of(runs.works, runs.cut_runs, setting_.options);
     done.notes_on_runs = notes_on_runs(done.runs, part.program, *setting_.options.target);
     std::ranges::move(note_misread_arcs(part.program, part.meaning, *setting_.options.target),
                       std::back_inserter(done.notes_on_runs));
@@ -206,7 +207,10 @@ class Prover {
     while (true) {
       ProvedText round = anything_rewritten() ? verified_text() : part_itself();
       if (!tell_(0)) return std::nullopt;
-      if (!round.proved && take_back(round)) continue;
+      if (!round.proved && take_back(round)) {
+        if (!part_.window) revert_growth(runs_.works, runs_.cut_runs, options_);
+        continue;
+      }
       if (round.unchanged) round.near_edges = near_edges(std::nullopt);
       return round;
     }

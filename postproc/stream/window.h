@@ -35,6 +35,7 @@
 #include "postproc/runs/kept_causes.h"
 #include "postproc/runs/section.h"
 #include "postproc/runs/tolerance_scale.h"
+#include "postproc/smooth/growth.h"
 #include "postproc/smooth/part_runs.h"
 #include "postproc/stream/assembly.h"
 #include "postproc/stream/part_crossings.h"
@@ -90,9 +91,10 @@ struct WindowDone {
   NewTextBefore after;
   TextBefore old_after;
   std::vector<RunReport> runs;
-  CauseTally causes;  // of what is kept
+  CauseTally causes;                    // of what is kept
   std::optional<ToleranceScale> scale;  // where its runs were smoothed
   Outlook outlook;
+  PartSums sums;
   std::vector<gcode::Diagnostics> notes;
   gcode::Diagnostics notes_on_runs;                        // postproc/stream/smooth_result.h
   std::shared_ptr<const std::vector<SelfProximity>> near;  // of its long runs; or none

@@ -1,0 +1,108 @@
+// Runs that were chosen one by one, judged together.
+#include "postproc/smooth/growth.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "gcode/state/reason.h"
+#include "tests/support/wavy_programs.h"
+
+namespace batten::postproc {
+namespace {
+
+Figures figures(double seconds, double blocks, double bytes, double distance) {
+  return {{seconds, seconds, seconds}, blocks, bytes, distance, 0.1};
+}
+
+// Runs of 100 mm in 100 blocks of 1000 bytes, which take 10 s and are 0.004 mm off.
+class Growth : public testing::Test {
+ protected:
+  // Candidates in the order of the choice; none: the run is kept.
+  void add(const std::vector<Figures>& candidates) {
+    const gcode::ModalState& state = read_.meaning.states.front();
+    RunState work{works_.size(), {read_.program, state, state, "\n", 100, 1000}};
+    work.smoothed.facts.scale.original = figures(10, 100, 1000, 0.004);
+    work.smoothed.facts.length = 100;
+    for (const Figures& each : candidates) {
+      work.selection.order.push_back(work.smoothed.candidates.size());
+      work.smoothed.candidates.emplace_back().figures = each;
+    }
+    works_.push_back(std::move(work));
+  }
+
+  // Indices of the chosen candidates, -1 where the run is kept.
+  std::vector<int> settled(Prefer prefer = Prefer::kTime) {
+    SmoothOptions options = options_for("linuxcnc");
+    options.prefer = prefer;
+    revert_growth(works_, cut_runs_, options);
+    std::vector<int> chosen;
+    for (const RunState& work : works_) {
+      const bool any = work.chosen() != nullptr;
+      chosen.push_back(any ? static_cast<int>(work.selection.order[work.tried]) : -1);
+    }
+    return chosen;
+  }
+
+  ReadText read_{"G21\n"};
+  std::vector<RunState> works_;
+  std::vector<CutRun> cut_runs_;
+};
+
+using Chosen = std::vector<int>;
+
+TEST_F(Growth, StaysWhereTheWholeIsAPercentFaster) {
+  add({figures(9, 140, 1400, 0.004)});
+  for (int i = 0; i < 8; ++i) add({});
+  EXPECT_EQ(settled(), (Chosen{0, -1, -1, -1, -1, -1, -1, -1, -1}));
+}
+
+TEST_F(Growth, GoesWhereTheWholeIsNot) {
+  add({figures(9, 140, 1400, 0.004)});
+  for (int i = 0; i < 10; ++i) add({});
+  EXPECT_EQ(settled(), Chosen(11, -1));
+  EXPECT_EQ(works_[0].reject_reason, gcode::reason::kLarger);
+}
+
+TEST_F(Growth, IsPaidByWhatIsSmallerElsewhere) {
+  add({figures(9.95, 120, 1000, 0.004)});  // the least seconds for a block
+  add({figures(9.8, 120, 1000, 0.004)});
+  add({figures(10, 75, 1000, 0.004)});
+  EXPECT_EQ(settled(), (Chosen{-1, 0, 0}));
+}
+
+TEST_F(Growth, ChangesToACandidateThatDoesNotGrow) {
+  add({figures(9.95, 120, 1000, 0.004), figures(9.96, 110, 1000, 0.004),
+       figures(9.99, 100, 1000, 0.002)});
+  add({});
+  EXPECT_EQ(settled(), (Chosen{2, -1}));
+}
+
+TEST_F(Growth, OfBytesIsPaidByHalfTheDistance) {
+  add({figures(10, 100, 1100, 0.001)});
+  EXPECT_EQ(settled(), Chosen{0});
+  add({});
+  EXPECT_EQ(settled(), (Chosen{-1, -1}));
+}
+
+TEST_F(Growth, OfTheDistanceGoesAsThatOfBlocksDoes) {
+  add({figures(9.75, 50, 500, 0.006)});
+  EXPECT_EQ(settled(), Chosen{0});
+  add({});
+  EXPECT_EQ(settled(), (Chosen{0, -1}));
+  add({});
+  EXPECT_EQ(settled(), (Chosen{-1, -1, -1}));
+  EXPECT_EQ(works_[0].reject_reason, gcode::reason::kFarther);
+}
+
+TEST_F(Growth, OfAFormThatIsAskedForStays) {
+  add({figures(10, 140, 1400, 0.006)});
+  works_[0].smoothed.candidates[0].form = Form::kArcs;
+  SmoothOptions options = options_for("linuxcnc");
+  options.output = Form::kArcs;
+  revert_growth(works_, cut_runs_, options);
+  EXPECT_NE(works_[0].chosen(), nullptr);
+}
+
+}  // namespace
+}  // namespace batten::postproc
