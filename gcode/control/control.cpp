@@ -1,10 +1,12 @@
 #include "gcode/control/control.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <numbers>
 
 #include "gcode/rs274/lexer.h"
+#include "gcode/state/mode_words.h"
 #include "gcode/text/characters.h"
 
 namespace batten::gcode {
@@ -73,6 +75,38 @@ std::string_view unit_word(const Control& control, Units units) {
 std::string_view other_meaning(const Control& control, int g_code) {
   const auto found = std::ranges::find(control.other_meanings, g_code, &OtherMeaning::g_code);
   return found == control.other_meanings.end() ? std::string_view() : found->text;
+}
+
+namespace {
+
+// Whether the control takes the word that `text` begins with for another one.
+bool has_other_meaning(const Control& control, std::string_view text) {
+  if (!text.starts_with('G')) return false;
+  double number = 0.0;
+  std::from_chars(text.data() + 1, text.data() + text.size(), number);
+  return !other_meaning(control, static_cast<int>(std::lround(10.0 * number))).empty();
+}
+
+}  // namespace
+
+std::vector<std::string_view> words_of_modes(const Control& control) {
+  constexpr int kInch = 200;
+  const bool is_rs274 = control.language == Language::kRs274;
+  const auto word_of = [&](const ModeWords& each, ModeSet mode) {
+    if (is_rs274 && mode == mode::kControlSmoothing) return control.smoothing_off;
+    const bool has_other_units = is_rs274 && !other_meaning(control, kInch).empty();
+    return mode == mode::kUnits && has_other_units ? each.siemens : each.in(control.language);
+  };
+  std::vector<std::string_view> words;
+  ModeSet mode = 1;
+  for (const ModeWords& each : mode_words()) {
+    const std::string_view word = word_of(each, mode);
+    const bool is_new = !word.empty() && std::ranges::find(words, word) == words.end();
+    const bool is_taken = is_rs274 && has_other_meaning(control, word);
+    if ((control.lacks & mode) == 0 && is_new && !is_taken) words.push_back(word);
+    mode <<= 1U;
+  }
+  return words;
 }
 
 bool refuses_word(const Control& control, char letter, int number) {

@@ -144,6 +144,9 @@ struct Control {
   ArcChords chords;
   SweepNoise sweep_noise = SweepNoise::kNone;
 
+  // The word that ends smoothing by the control, whichever word began it; empty: not read.
+  std::string_view smoothing_off = "G5.1 Q0";
+
   // Modes that nothing can turn on there: no word for them is known to it. Only what is certain: a
   // mode that may exist under another word is not among them.
   ModeSet lacks = 0;
@@ -190,6 +193,10 @@ struct Control {
 // What a G word (in tenths) does on this control that is not what the reader takes it for, with
 // what to say instead; empty where both agree or nothing is known.
 [[nodiscard]] std::string_view other_meaning(const Control& control, int g_code);
+
+// The words of all modes but those that the control lacks, for a program in which nothing is known;
+// "G20 or G21" where there is a choice. Each once. Words with another meaning there are left out.
+[[nodiscard]] std::vector<std::string_view> words_of_modes(const Control& control);
 
 // Whether the control refuses this word (`number` in tenths), as far as is known. Asked when a
 // program is moved from one control to another.

@@ -73,6 +73,7 @@ std::vector<Control> machining_center_family() {
       mark(SourceMark::kSuperNurbs),
       {"before-run = [\"G131 F5000 J1 E{tolerance}\"]  # its numbers are the machine builder's",
        "after-run = [\"G130\"]"});
+  okuma.smoothing_off = "G130";
   // G54 to G59 are tool lengths there, work offsets are G15 H.
   okuma.refused = "G43 G49 G54 G55 G56 G57 G58 G59 H";
 
@@ -87,11 +88,13 @@ std::vector<Control> machining_center_family() {
       "hurco", "Hurco: arcs by R and helices in G17, G18, G19; decimal point always", kMacro,
       {"before-run = [\"G5.3 P10\"]  # quality, P10 fine to P35; seen in posts alone",
        "after-run = [\"G5.3 P35\"]"});
+  hurco.smoothing_off = "";
   write_arcs_by_radius(hurco);
 
   Control fagor = machining_center(
       "fagor", "Fagor 8055 to 8070: arcs and helices in G17, G18, G19; G70 and G71",
       mark(SourceMark::kHashCommand));
+  fagor.smoothing_off = "";
   fagor.decimal_point = false;
   fagor.refused = kLengthByD;
   fagor.other_meanings = {{200, "no inch word on Fagor, whose units are G70 and G71"},
@@ -100,6 +103,7 @@ std::vector<Control> machining_center_family() {
   // I J K are places under G90 there, offsets to the reader.
   Control num =
       machining_center("num", "NUM: arcs by R and helices in G17, G18, G19; G70 and G71", 0);
+  num.smoothing_off = "";
   num.decimal_point = false;
   write_arcs_by_radius(num);
   num.centers_follow_distance = true;
@@ -110,6 +114,7 @@ std::vector<Control> machining_center_family() {
 
   Control philips = machining_center(
       "philips", "Philips 432, 532 (Maho): arcs by R in G17, G18, G19; G70 and G71", 0);
+  philips.smoothing_off = "";
   philips.decimal_point = false;
   philips.helices = false;
   write_arcs_by_radius(philips);

@@ -10,6 +10,7 @@ Control plc(std::string_view name, std::string_view description) {
   control.name = name;
   control.description = description;
   control.places = control.arc_ends = control.centers = {4, 5};
+  control.smoothing_off = "";
   return control;
 }
 
@@ -26,6 +27,7 @@ Control codesys() {
       {210, "no word for millimetres on CODESYS; units are those of the axes (--units)"},
       {980, "absolute arc centres on CODESYS, the end of a cycle to the reader"},
       {990, "relative arc centres on CODESYS, the end of a cycle to the reader"}};
+  control.lacks += mode::kUnits;  // no word turns them over
   control.refused = "G40 G43 G49 G80 G94 M6 H T";
   return control;
 }

@@ -134,7 +134,7 @@ class Interpreter {
         ++i;
       }
     }
-    follow_lost_modes(program_, read_, carry_.lost, carry_.told, found_);
+    follow_lost_modes(program_, read_, options_.asked, carry_.lost, carry_.told, found_);
     carry_.any_words |= !nothing_said_yet();
     carry_.state = now_;
     carry_.unit_word_seen = read_.unit_word_seen;

@@ -51,6 +51,7 @@ struct ReadOptions {
   // What the control that the program is for does not have (Control::lacks): that cannot be on
   // behind a block that is not understood.
   ModeSet lacks = 0;
+  ModeSet asked = mode::kAll;  // without which moves are told to be copied (modes-unknown)
   // Most builds of the control leave out a block without a G, M or T word: what it would change is
   // unknown behind it.
   bool needs_commands = false;

@@ -19,13 +19,17 @@ namespace {
 constexpr std::string_view kId = "modes-unknown";
 
 // "plane (G17), scaling (G50)"
-std::string missing_in(const ModalState& state, Language language) {
+std::string missing_in(const ModalState& state, ModeSet asked, Language language) {
   std::vector<std::string> missing;
+  ModeSet bit = 1;
   for (const ModeWords& each : mode_words()) {
-    if (!each.is_unknown(state)) continue;
-    const std::string_view word = each.in(language);
-    missing.push_back(word.empty() ? std::string(each.name)
-                                   : fmt::format("{} ({})", each.name, word));
+    const bool is_missing = (asked & bit) != 0 && each.is_unknown(state);
+    bit <<= 1U;
+    if (!is_missing) continue;
+    std::vector<std::string_view> ways = {each.in(language), each.option};
+    std::erase(ways, std::string_view{});
+    missing.push_back(ways.empty() ? std::string(each.name)
+                                   : fmt::format("{} ({})", each.name, fmt::join(ways, ", or ")));
   }
   return fmt::format("{}", fmt::join(missing, ", "));
 }
@@ -50,17 +54,17 @@ bool names_place(const Program& program, const Block& block) {
 
 }  // namespace
 
-void follow_lost_modes(const Program& part, const Interpretation& read, LostModes& modes,
-                       DiagnosticLimiter& limiter, Diagnostics& found) {
+void follow_lost_modes(const Program& part, const Interpretation& read, ModeSet asked,
+                       LostModes& modes, DiagnosticLimiter& limiter, Diagnostics& found) {
   std::uint32_t state = 0;
-  bool known = is_known(read.states[0]);
+  bool known = is_known(read.states[0], asked);
   std::optional<std::uint32_t> missing_of;  // the state that modes.missing is of
   for (std::size_t i = 0; i < read.blocks.size(); ++i) {
     const BlockMeaning& meaning = read.blocks[i];
     const bool was_known = known;
     if (meaning.state_after != state) {
       state = meaning.state_after;
-      known = is_known(read.states[state]);
+      known = is_known(read.states[state], asked);
     }
     if (was_known && !known) {
       const Block& block = part.blocks[i];
@@ -74,7 +78,7 @@ void follow_lost_modes(const Program& part, const Interpretation& read, LostMode
       if (modes.moves > 0 && limiter.counts(kId, modes.where)) found.push_back(warning_of(modes));
     } else if (modes.lost && names_place(part, part.blocks[i])) {
       ++modes.moves;
-      if (state != missing_of) modes.missing = missing_in(read.states[state], part.language);
+      if (state != missing_of) modes.missing = missing_in(read.states[state], asked, part.language);
       missing_of = state;
     }
   }

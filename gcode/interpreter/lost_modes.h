@@ -22,10 +22,10 @@ struct LostModes {
 };
 
 // Follows the states of a part that was interpreted, and adds a warning modes-unknown for each
-// block behind which moves are copied because the modes are unknown (is_known), once the modes are
-// set again. Linear.
-void follow_lost_modes(const Program& part, const Interpretation& read, LostModes& modes,
-                       DiagnosticLimiter& limiter, Diagnostics& found);
+// block behind which moves are copied because modes that are asked for are unknown (is_known), once
+// these are set again. Linear.
+void follow_lost_modes(const Program& part, const Interpretation& read, ModeSet asked,
+                       LostModes& modes, DiagnosticLimiter& limiter, Diagnostics& found);
 
 // The warning of modes that are not known to the end of the program.
 void tell_lost_modes(const LostModes& modes, Diagnostics& found);

@@ -57,14 +57,15 @@ ModalState unknown_modal_state(const ModalState& before, ModeSet lacks) {
   for_each_mode(state, before, [lacks](auto& item, auto was, auto unknown, ModeSet bit) {
     if ((lacks & bit) == 0 || was != item) item = unknown;
   });
+  if ((lacks & mode::kUnits) != 0) state.units = before.units;  // nothing can have changed them
   return state;
 }
 
-bool is_known(const ModalState& state) {
-  ModalState asked = state;
+bool is_known(const ModalState& state, ModeSet asked) {
+  ModalState items = state;
   bool known = true;
-  for_each_mode(asked, state, [&known](auto item, auto, auto unknown, ModeSet bit) {
-    known &= item != unknown || (mode::kAll & bit) == 0;
+  for_each_mode(items, state, [&known, asked](auto item, auto, auto unknown, ModeSet bit) {
+    known &= item != unknown || (asked & bit) == 0;
   });
   return known;
 }
@@ -73,8 +74,7 @@ bool path_alone_counts(const ModalState& state) {
   const auto leaves_path = [&state](const ModalSwitch& each) {
     return !each.bends_path || state.*each.item == TriState::kOff;
   };
-  return std::ranges::all_of(kModalSwitches, leaves_path) &&
-         state.control_smoothing != TriState::kUnknown && state.units != Units::kUnknown &&
+  return std::ranges::all_of(kModalSwitches, leaves_path) && state.units != Units::kUnknown &&
          state.feed_mode == FeedMode::kPerMinute && state.distance == DistanceMode::kAbsolute;
 }
 

@@ -112,9 +112,10 @@ inline constexpr ModeSet kAll =
 // control lacks is still off, and as it is at power-on, where it was so before.
 [[nodiscard]] ModalState unknown_modal_state(const ModalState& before = {}, ModeSet lacks = 0);
 
-// Does every item have a value? The motion mode, the feed, the spindle speed and the laser
-// mode are not asked for: a block names the first itself, the others do not bend the path.
-[[nodiscard]] bool is_known(const ModalState& state);
+// Does every item that is asked for have a value? The motion mode, the feed, the spindle speed and
+// the laser mode are not asked for: a block names the first itself, the others do not bend the
+// path.
+[[nodiscard]] bool is_known(const ModalState& state, ModeSet asked = mode::kAll);
 
 // A state in which the path in X, Y, Z is all there is to a cutting motion. Unknown is not.
 [[nodiscard]] bool path_alone_counts(const ModalState& state);
@@ -138,11 +139,11 @@ struct ControlState {
   // the control at power-on is no repetition: it must stay.
   std::uint32_t set_by_word = 0;
   static_assert(kCodeGroups <= 32);
-  bool scaled_by_axis = false;          // Klartext: cycle 26 may hold a factor for an axis
-  bool calls_keep_modes = false;        // ReadOptions
-  ModeSet lacks = 0;                    // ReadOptions
+  bool scaled_by_axis = false;           // Klartext: cycle 26 may hold a factor for an axis
+  bool calls_keep_modes = false;         // ReadOptions
+  ModeSet lacks = 0;                     // ReadOptions
   bool centers_follow_distance = false;  // ReadOptions
-  const OwnWords* own_words = nullptr;  // ReadOptions; they outlive the reading
+  const OwnWords* own_words = nullptr;   // ReadOptions; they outlive the reading
 
   [[nodiscard]] bool is_set(CodeGroup group) const { return (set_by_word & bit(group)) != 0; }
   void mark_set(CodeGroup group) { set_by_word |= bit(group); }

@@ -35,7 +35,7 @@ constexpr std::array kModeWords = {
     ModeWords{kSwitch<&Modal::polar>, "polar coordinates", "G15", "TRAFOOF", ""},
     ModeWords{kSwitch<&Modal::cylindrical>, "cylindrical coordinates", "G7.1 C0", "TRAFOOF", ""},
     ModeWords{kSwitch<&Modal::control_smoothing>, "smoothing by the control", "G5.1 Q0", "COMPOF",
-              "M113"},
+              "M113", "--allow control-smoothing"},
     ModeWords{kSwitch<&Modal::modal_macro>, "modal macro", "G67", "MCALL",
               "CYCL DEF of a cycle that waits for its call"},
     ModeWords{kSwitch<&Modal::constant_surface_speed>, "constant surface speed", "G97", "G97", ""},
@@ -47,17 +47,5 @@ static_assert(kModalSwitches.back().item == &Modal::laser_power_mode);
 }  // namespace
 
 std::span<const ModeWords> mode_words() { return kModeWords; }
-
-std::vector<std::string_view> words_of_modes(ModeSet lacks, Language language) {
-  std::vector<std::string_view> words;
-  ModeSet bit = 1;
-  for (const ModeWords& each : kModeWords) {
-    const std::string_view word = each.in(language);
-    const bool is_new = !word.empty() && std::ranges::find(words, word) == words.end();
-    if ((lacks & bit) == 0 && is_new) words.push_back(word);
-    bit <<= 1U;
-  }
-  return words;
-}
 
 }  // namespace batten::gcode

@@ -3,7 +3,6 @@
 
 #include <span>
 #include <string_view>
-#include <vector>
 
 #include "gcode/state/modal_state.h"
 #include "gcode/text/language.h"
@@ -18,6 +17,7 @@ struct ModeWords {
   std::string_view rs274;
   std::string_view siemens;
   std::string_view klartext;
+  std::string_view option = {};  // with which runs go without the mode
 
   [[nodiscard]] std::string_view in(Language language) const {
     return language == Language::kRs274     ? rs274
@@ -28,9 +28,5 @@ struct ModeWords {
 
 // In the order of the bits of a ModeSet.
 [[nodiscard]] std::span<const ModeWords> mode_words();
-
-// The words of all modes but those that a control lacks, for a program in which nothing is known;
-// "G20 or G21" where there is a choice. Each once.
-[[nodiscard]] std::vector<std::string_view> words_of_modes(ModeSet lacks, Language language);
 
 }  // namespace batten::gcode

@@ -139,6 +139,7 @@ PartReading reading_of(const gcode::SourceText& source, const ReadingCommand& co
   reading.text.dwells = dwells;
   reading.options = {.units = command.units,
                      .calls_keep_modes = calls_keep_modes(command.allowed),
+                     .asked = asked_modes(command.allowed),
                      .usual_caller_modes = usual_caller_modes(command.allowed),
                      .own_words = command.own_words};
   read_as(command.target, kind, reading.options);

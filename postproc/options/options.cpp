@@ -213,6 +213,11 @@ bool calls_keep_modes(std::span<const std::string> allowed) {
   return std::ranges::find(allowed, gcode::reason::kSubprogram) != allowed.end();
 }
 
+gcode::ModeSet asked_modes(std::span<const std::string> allowed) {
+  const bool lifts = std::ranges::find(allowed, gcode::reason::kControlSmoothing) != allowed.end();
+  return lifts ? gcode::mode::kAll - gcode::mode::kControlSmoothing : gcode::mode::kAll;
+}
+
 bool usual_caller_modes(std::span<const std::string> allowed) {
   return std::ranges::find(allowed, gcode::reason::kCallerModes) != allowed.end();
 }
@@ -231,8 +236,8 @@ void read_as(const gcode::Control* target, gcode::SourceKind source, gcode::Read
     const auto said = reading.own_words->all();
     words.assign(said.begin(), said.end());
   }
-  const auto row = std::ranges::find(gcode::own_effects(), "position unknown",
-                                     &gcode::OwnEffectRow::name);
+  const auto row =
+      std::ranges::find(gcode::own_effects(), "position unknown", &gcode::OwnEffectRow::name);
   for (const int code : target->zero_points) {
     words.push_back({fmt::format("G{}", code / 10), std::string(row->name), row->effect});
   }
@@ -243,6 +248,7 @@ gcode::ReadOptions read_options_of(const SmoothOptions& options) {
   gcode::ReadOptions reading;
   reading.units = options.units;
   reading.calls_keep_modes = calls_keep_modes(options.allowed);
+  reading.asked = asked_modes(options.allowed);
   reading.usual_caller_modes = usual_caller_modes(options.allowed);
   reading.own_words = options.own_words;
   reading.subprograms = options.subprograms;

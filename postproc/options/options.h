@@ -92,7 +92,7 @@ struct SmoothOptions {
   // Runs of one shape are smoothed once in a part (postproc/smooth/repeated_runs.h). Each by itself
   // comes out the same to within the rounding of what is computed.
   bool once_for_repeats = true;
-  bool quick = false;    // less effort for few moves, all forms from the same curves: for a survey
+  bool quick = false;  // less effort for few moves, all forms from the same curves: for a survey
 };
 
 // How lines are laid along a curve: as the user said, otherwise minlink for the fewest bytes and
@@ -117,6 +117,9 @@ void read_as(const gcode::Control* target, gcode::SourceKind source, gcode::Read
 // Whether they say that programs that others call are called under the modes of power-on (reason
 // `caller-modes`).
 [[nodiscard]] bool usual_caller_modes(std::span<const std::string> allowed);
+
+// The modes without which nothing is rewritten: all, but those that an option lifts.
+[[nodiscard]] gcode::ModeSet asked_modes(std::span<const std::string> allowed);
 
 // How programs are read under these options.
 [[nodiscard]] gcode::ReadOptions read_options_of(const SmoothOptions& options);

@@ -493,7 +493,7 @@ std::string profile_text(const gcode::Control& target) {
   }
   for (const std::string_view hint : target.smoothing_words) text += fmt::format("# {}\n", hint);
   text += fmt::format("\n# Behind a block that is not understood all modes are said by: {}\n",
-                      fmt::join(gcode::words_of_modes(target.lacks, target.language), ", "));
+                      fmt::join(gcode::words_of_modes(target), ", "));
   text += fmt::format(
       "\n# What words of your own do, which Batten does not know; you vouch for it. Such as\n"
       "# M501 = \"keeps state\"\n# \"G65 P9810\" = \"moves\"\n[{}]\n",

@@ -58,20 +58,19 @@ constexpr UnsafeSwitch kUnsafeSwitches[] = {
 // All but the laser's, which is never known to be on.
 static_assert(std::size(kUnsafeSwitches) + 1 == gcode::kModalSwitches.size());
 
+bool is_allowed(std::string_view id, const GroupingOptions& options) {
+  return std::ranges::find(options.allowed, id) != options.allowed.end();
+}
+
 std::string_view unsafe_mode(const ModalState& state, const GroupingOptions& options) {
-  const auto is_allowed = [&options](std::string_view id) {
-    return std::ranges::find(options.allowed, id) != options.allowed.end();
-  };
   for (const UnsafeSwitch& unsafe : kUnsafeSwitches) {
-    const bool lifted =
-        unsafe.item == &ModalState::control_smoothing && is_allowed(reason::kControlSmoothing);
-    if (state.*unsafe.item == TriState::kOn && !lifted) return unsafe.reason;
+    if (state.*unsafe.item == TriState::kOn) return unsafe.reason;
   }
   if (state.distance == gcode::DistanceMode::kIncremental) return reason::kIncremental;
   if (state.feed_mode == gcode::FeedMode::kInverseTime) return reason::kInverseTime;
   if (state.feed_mode == gcode::FeedMode::kPerRevolution) return reason::kFeedPerRevolution;
   if (state.path == gcode::PathMode::kExactStop ||
-      (state.path == gcode::PathMode::kExactPath && !is_allowed(reason::kExactStop))) {
+      (state.path == gcode::PathMode::kExactPath && !is_allowed(reason::kExactStop, options))) {
     return reason::kExactStop;
   }
   return {};
@@ -283,8 +282,10 @@ std::vector<Section> group_runs(const gcode::Program& program,
 }
 
 std::string_view unsafe_state(const ModalState& state, const GroupingOptions& options) {
-  const std::string_view mode = unsafe_mode(state, options);
-  return mode.empty() ? unknown_state(state) : mode;
+  ModalState asked = state;
+  if (is_allowed(reason::kControlSmoothing, options)) asked.control_smoothing = TriState::kOff;
+  const std::string_view mode = unsafe_mode(asked, options);
+  return mode.empty() ? unknown_state(asked) : mode;
 }
 
 void UnsafeStates::begin(const gcode::Interpretation& read) {

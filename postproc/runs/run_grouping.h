@@ -37,7 +37,7 @@ struct GroupingOptions {
 
 // Why no motion may be rewritten in this state; empty where it may. G61 (exact path) is lifted by
 // --allow exact-stop; G61.1 and G60 are not, their user asked for the stops. --allow
-// control-smoothing lifts that state. A motion moves in the state after its block.
+// control-smoothing lifts that state, on or unknown. A motion moves in the state after its block.
 [[nodiscard]] std::string_view unsafe_state(const gcode::ModalState& state,
                                             const GroupingOptions& options);
 

@@ -124,8 +124,9 @@ TEST(BoundedBlocks, LeaveUnknownWhatAProgramForGrblHasSetOn) {
 
 std::vector<std::string> words_for(const gcode::Control& control) {
   std::vector<std::string> words;
-  for (const std::string_view word : gcode::words_of_modes(control.lacks, control.language)) {
-    words.emplace_back(word == "G20 or G21" ? "G21" : word);
+  for (const std::string_view word : gcode::words_of_modes(control)) {
+    const std::size_t choice = word.find(" or ");
+    words.emplace_back(choice == word.npos ? word : word.substr(choice + 4));
   }
   return words;
 }
@@ -142,17 +143,37 @@ TEST(BoundedBlocks, AreSettledByTheWordsThatTheMessageNames) {
   }
 }
 
-// The programs of some controls may not hold G5.1, and their own word for it is not read.
-TEST(BoundedBlocks, AreSettledOnEveryControlButThoseWithOwnWordsForSmoothing) {
-  std::vector<std::string> not_settled;
+// Where the control's own word that ends its smoothing is not read, its user says that both
+// tolerances together are fine; whether it is on is then no matter. On Philips other words, too,
+// have meanings of its own: no list settles its modes.
+TEST(BoundedBlocks, AreSettledOnEveryControlSomeWithAnOption) {
+  std::vector<std::string> only_with_option;
   for (const gcode::Control& control : gcode::controls()) {
     if (control.language != gcode::Language::kRs274 || control.needs_commands) continue;
-    if (rewritten_behind("G777", words_for(control), options_for(control.name)) != 2U) {
-      not_settled.push_back(control.name);
-    }
+    if (control.name == "philips") continue;
+    SCOPED_TRACE(control.name);
+    SmoothOptions options = options_for(control.name);
+    options.units = gcode::Units::kMillimetre;
+    const std::string units = gcode::other_meaning(control, 210).empty() ? "G21" : "";
+    const std::vector<std::string> words = words_for(control);
+    if (rewritten_behind("G777", words, options, units) == 2U) continue;
+    only_with_option.push_back(control.name);
+    options.allowed = {"control-smoothing"};
+    EXPECT_EQ(rewritten_behind("G777", words, options, units), 2U);
   }
-  EXPECT_EQ(not_settled,
-            (std::vector<std::string>{"okuma", "hurco", "fagor", "num", "philips", "codesys", "beckhoff"}));
+  EXPECT_EQ(only_with_option,
+            (std::vector<std::string>{"hurco", "fagor", "num", "codesys", "beckhoff"}));
+}
+
+TEST(BoundedBlocks, BehindSmoothingThatIsOnAreSettledWithTheOption) {
+  const gcode::Control* okuma = gcode::find_control("okuma");
+  ASSERT_NE(okuma, nullptr);
+  std::vector<std::string> words = words_for(*okuma);
+  std::erase(words, "G130");
+  SmoothOptions options = options_for("okuma");
+  EXPECT_EQ(rewritten_behind("G131 F5000 J1 E0.01\nG777", words, options), 1U);
+  options.allowed = {"control-smoothing"};
+  EXPECT_EQ(rewritten_behind("G131 F5000 J1 E0.01\nG777", words, options), 2U);
 }
 
 TEST(BoundedBlocks, OfSiemensAreSettledByTheWordsOfSiemens) {
