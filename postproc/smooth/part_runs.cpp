@@ -166,7 +166,9 @@ class PartSmoother {
  public:
   PartSmoother(const ProgramPart& part, const SmoothOptions& options,
                const ProgressCallback& progress, PartRuns& runs, RunMemos* memos)
-      : part_(part), options_(options), progress_(progress), runs_(runs), memos_(memos) {}
+      : part_(part), options_(options), progress_(progress), runs_(runs), memos_(memos) {
+    for (const RunState& work : runs_.works) points_ += run_of(work).points.size();
+  }
 
   // False: the work was stopped.
   bool run() {
@@ -177,12 +179,20 @@ class PartSmoother {
     if (options_.method != Method::kNone && memos_ == nullptr) {
       note_bands();  // they warn of what new paths may do
     }
-    for (const RunState& work : runs_.works) points_ += run_of(work).points.size();
-    if (!smooth_works(whole)) return false;
+    if (!smooth_works(whole) || !cut_what_disappoints()) return false;
+    if (!part_.window) revert_growth(runs_.works, runs_.cut_runs, options_);
+    return true;
+  }
+
+  // Replaces runs that would be kept as a whole by pieces: their parts differ. False: the work was
+  // stopped.
+  bool cut_what_disappoints() {
+    const std::size_t cut_before = runs_.cut_runs.size();
     const std::vector<std::size_t> pieces = cut_runs();
     if (!smooth_works(pieces)) return false;
-    for (CutRun& cut : runs_.cut_runs) revert_costly_pieces(cut, runs_.works, options_);
-    if (!part_.window) revert_growth(runs_.works, runs_.cut_runs, options_);
+    for (std::size_t i = cut_before; i < runs_.cut_runs.size(); ++i) {
+      revert_costly_pieces(runs_.cut_runs[i], runs_.works, options_);
+    }
     return true;
   }
 
@@ -271,8 +281,15 @@ class PartSmoother {
     return runs;
   }
 
-  // Replaces runs that would be kept as a whole by pieces: their parts differ. Returns the works
-  // that are new.
+  // Whether something speaks against the run as a whole that may be true of a part of it only.
+  static bool disappoints(const RunState& work) {
+    const std::string_view kept = work.selection.reason;
+    return is_rejected_by_proof(work) || kept == gcode::reason::kNoGain ||
+           kept == gcode::reason::kSlower || kept == gcode::reason::kLarger ||
+           kept == gcode::reason::kFarther || kept == gcode::reason::kNoFit;
+  }
+
+  // Returns the works that are new.
   std::vector<std::size_t> cut_runs() {
     std::vector<std::size_t> fresh;
     std::vector<Section> sections;
@@ -283,6 +300,9 @@ class PartSmoother {
       if (next < runs_.works.size() && runs_.works[next].section == i) work = &runs_.works[next++];
       if (work != nullptr && add_pieces(*work, sections, works, fresh)) continue;
       if (work != nullptr) {
+        if (work->cut_run && work->first == 0) {
+          runs_.cut_runs[*work->cut_run].first_work = works.size();
+        }
         work->section = sections.size();
         works.push_back(std::move(*work));
       }
@@ -295,17 +315,13 @@ class PartSmoother {
 
   bool add_pieces(RunState& work, std::vector<Section>& sections, std::vector<RunState>& works,
                   std::vector<std::size_t>& fresh) {
-    const std::string_view kept = work.selection.reason;
-    const bool disappoints = kept == gcode::reason::kNoGain || kept == gcode::reason::kSlower ||
-                             kept == gcode::reason::kLarger || kept == gcode::reason::kFarther ||
-                             kept == gcode::reason::kNoFit;
-    if (!disappoints) return false;
+    if (work.cut_run || !disappoints(work)) return false;
     std::vector<RunPiece> pieces = cut_run(runs_.sections[work.section], part_.meaning, {});
     if (pieces.size() < 2) return false;
     CutRun cut;
     cut.path = work.context.after.path;
     cut.facts = work.smoothed.facts;
-    cut.reason = work.selection.reason;
+    cut.reason = work.reject_reason.empty() ? work.selection.reason : work.reject_reason;
     cut.outlook = std::move(work.outlook);
     cut.first_work = works.size();
     cut.pieces = pieces.size();
@@ -395,6 +411,11 @@ RunMemo& RunMemos::of(const Section& section) {
 bool smooth_runs(const ProgramPart& part, const SmoothOptions& options,
                  const ProgressCallback& progress, PartRuns& runs, RunMemos* memos) {
   return PartSmoother(part, options, progress, runs, memos).run();
+}
+
+bool cut_rejected_runs(const ProgramPart& part, const SmoothOptions& options,
+                       const ProgressCallback& progress, PartRuns& runs) {
+  return PartSmoother(part, options, progress, runs, nullptr).cut_what_disappoints();
 }
 
 }  // namespace batten::postproc

@@ -72,4 +72,9 @@ class RunMemos {
                                const ProgressCallback& progress, PartRuns& runs,
                                RunMemos* memos = nullptr);
 
+// Smooths runs that the proof left no candidate of once more, in pieces, where they can be cut.
+// Works and sections move. False: the work was stopped.
+[[nodiscard]] bool cut_rejected_runs(const ProgramPart& part, const SmoothOptions& options,
+                                     const ProgressCallback& progress, PartRuns& runs);
+
 }  // namespace batten::postproc

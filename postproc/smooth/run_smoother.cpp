@@ -376,6 +376,12 @@ void RunState::reject(std::string_view why) {
   if (chosen() == nullptr) reject_reason = why;
 }
 
+bool is_rejected_by_proof(const RunState& work) {
+  using namespace gcode::reason;
+  const std::string_view why = work.reject_reason;
+  return why == kCrossesItself || why == kWrongSide || why == kTargetCannot || why == kNotProved;
+}
+
 void RunState::start_again(const Run& run, const SmoothOptions& options) {
   smoothed = smooth_run(run, context, options, CandidateScope::kAll);
   selection = choose(smoothed, options);

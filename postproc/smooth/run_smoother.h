@@ -41,11 +41,15 @@ struct RunState {
 
   [[nodiscard]] const Candidate* chosen() const;
   void reject(std::string_view why);  // to its next candidate
-  // Makes all candidates anew, also those that were left out: where none is left of the others.
+  // Makes all candidates anew, also those that were left out: where none is left of the others. For
+  // short runs and pieces.
   void start_again(const Run& run, const SmoothOptions& options);
   // Texts and moves of candidates that were not chosen take room for nothing, nor do plans.
   void drop_what_is_not_written();
 };
+
+// Whether the proof left no candidate of it.
+[[nodiscard]] bool is_rejected_by_proof(const RunState& work);
 
 struct CutRun {  // into pieces, which follow each other in the list of works
   Run run;       // the whole

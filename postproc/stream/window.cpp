@@ -208,6 +208,7 @@ class Prover {
       ProvedText round = anything_rewritten() ? verified_text() : part_itself();
       if (!tell_(0)) return std::nullopt;
       if (!round.proved && take_back(round)) {
+        if (!smooth_rejected()) return std::nullopt;
         if (!part_.window) revert_growth(runs_.works, runs_.cut_runs, options_);
         continue;
       }
@@ -377,13 +378,23 @@ class Prover {
   }
 
   void reject(RunState& work, std::string_view why) {
-    // What a run of this round was given back with may be blocks already.
-    if (work.chosen() == nullptr) return;
     work.reject(why);
-    if (work.chosen() == nullptr && work.smoothed.left_out) {
+    if (work.cut_run) cuts_to_time_.insert(*work.cut_run);
+  }
+
+  // Runs that nothing is left of are smoothed in pieces, so that only those are kept that cannot be
+  // proved; where they cannot be cut, what the choice had left out is made. False: stopped.
+  bool smooth_rejected() {
+    const bool any = std::ranges::any_of(runs_.works, is_rejected_by_proof);
+    if (any && !cut_rejected_runs(part_, options_, tell_, runs_)) return false;
+    for (RunState& work : runs_.works) {
+      if (!is_rejected_by_proof(work) || !work.smoothed.left_out) continue;
       work.start_again(std::get<Run>(runs_.sections[work.section].content), options_);
     }
-    if (work.cut_run) revert_costly_pieces(runs_.cut_runs[*work.cut_run], runs_.works, options_);
+    for (const std::size_t cut : std::exchange(cuts_to_time_, {})) {
+      revert_costly_pieces(runs_.cut_runs[cut], runs_.works, options_);
+    }
+    return true;
   }
 
   const ProgramPart& part_;
@@ -392,6 +403,7 @@ class Prover {
   const Additions& additions_;
   const ProgressCallback& tell_;
   PartRuns& runs_;
+  std::set<std::size_t> cuts_to_time_;  // cut runs of which a piece was rejected
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
-// What becomes of runs whose text does not say what was promised: the next candidate, those that
-// were left out, and in the end the blocks as they were.
+// What becomes of runs whose text does not say what was promised: the next candidate, pieces of the
+// run, those that were left out, and in the end the blocks as they were.
 #include <gtest/gtest.h>
 
 #include <variant>
@@ -19,23 +19,25 @@ bool go_on(double) { return true; }
 // A program with one run, smoothed and not yet proved.
 class SmoothedPart {
  public:
-  explicit SmoothedPart(const std::string& text)
+  explicit SmoothedPart(const std::string& text, Form form = Form::kAuto)
       : read_(text), part_{read_.program, read_.meaning}, runs_(find_runs(part_, options_)) {
+    options_.output = form;
     EXPECT_TRUE(smooth_runs(part_, options_, go_on, runs_));
     EXPECT_EQ(runs_.works.size(), 1U);
   }
 
   RunState& work() { return runs_.works.at(0); }
+  const PartRuns& runs() const { return runs_; }
 
   void make_all() {
     work().start_again(std::get<Run>(runs_.sections.at(work().section).content), options_);
   }
 
-  // Puts a wrong way before the text of so many candidates of those that may be chosen.
+  // Puts a wrong way behind the first block of so many candidates of those that may be chosen.
   void spoil(std::size_t candidates) {
     for (std::size_t i = 0; i < candidates; ++i) {
       std::string& text = work().smoothed.candidates[work().selection.order.at(i)].text.text;
-      text.insert(0, kElsewhere);
+      text.insert(text.find('\n') + 1, kElsewhere);
     }
   }
 
@@ -53,10 +55,12 @@ class SmoothedPart {
 };
 
 // Of shallow waves two forms are good enough to be chosen.
-const std::string kTwoForms = wave_program({.lines = 600, .height = 0.5, .length = 6});
+const std::string kTwoForms = wave_program({.lines = 300, .height = 0.5, .length = 6});
 
 // Of steep waves near forms beat all others, which are not made.
-const std::string kOthersLeftOut = wave_program({.lines = 600, .height = 4, .length = 40});
+const std::string kOthersLeftOut = wave_program({.lines = 300, .height = 4, .length = 40});
+
+const std::string kLong = wave_program({.lines = 1500, .height = 4, .length = 40});
 
 TEST(PartProof, TakesTheNextCandidateWhereOneIsWrong) {
   SmoothedPart part(kTwoForms);
@@ -80,6 +84,34 @@ TEST(PartProof, MakesWhatWasLeftOutWhereAllThatWasMadeIsWrong) {
   EXPECT_FALSE(part.work().smoothed.left_out) << "made anew, all of them";
   EXPECT_EQ(part.work().reject_reason, "");
   EXPECT_EQ(done.text.find(kElsewhere), std::string::npos);
+}
+
+TEST(PartProof, CutsALongRunOfWhichNothingIsLeft) {
+  SmoothedPart part(kLong);
+  part.spoil(part.work().selection.order.size());
+  const ProvedText done = part.proved();
+  EXPECT_TRUE(done.proved);
+  ASSERT_EQ(part.runs().cut_runs.size(), 1U);
+  EXPECT_EQ(part.runs().cut_runs[0].reason, gcode::reason::kNotProved);
+  EXPECT_GE(part.runs().works.size(), 3U);
+  for (const RunState& piece : part.runs().works) EXPECT_NE(piece.chosen(), nullptr);
+  EXPECT_EQ(done.text.find(kElsewhere), std::string::npos);
+}
+
+TEST(PartProof, KeepsAPieceThatIsWrongAndCutsNoOther) {
+  SmoothedPart part(kLong, Form::kLines);
+  part.spoil(part.work().selection.order.size());
+  ASSERT_TRUE(part.proved().proved);
+  const std::size_t pieces = part.runs().works.size();
+  part.make_all();
+  part.spoil(part.work().selection.order.size());
+  const ProvedText done = part.proved();
+  EXPECT_TRUE(done.proved);
+  EXPECT_EQ(part.runs().works.size(), pieces);
+  EXPECT_EQ(part.work().chosen(), nullptr);
+  for (const RunState& piece : part.runs().works) {
+    EXPECT_EQ(piece.chosen() == nullptr, &piece == &part.work()) << piece.reject_reason;
+  }
 }
 
 TEST(PartProof, KeepsTheBlocksWhereEveryCandidateIsWrong) {
