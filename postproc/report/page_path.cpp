@@ -522,6 +522,8 @@ void ProgramSpeeds::add_chain(const ReadProgram& read, const Cut* begin, const C
     TimedPiece piece;
     piece.piece = meaning.motions[cut->motion].piece;
     piece.feed = cut->feed.value_or(0);
+    const gcode::Block& block = read.program->blocks[meaning.motions[cut->motion].block];
+    piece.says_speed = gcode::BlockWords(read.program->words_of(block)).has('S');
     const double length = geometry::length_of(piece.piece);
     if (length <= geometry::kSamePlace) continue;
     places_[cut->motion] = {chains_.size(), way, length};

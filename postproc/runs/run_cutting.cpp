@@ -35,6 +35,9 @@ Run part_of(const Run& run, std::size_t first, std::size_t last) {
     if (comment.vertex <= first || comment.vertex > last) continue;
     part.comments.push_back({comment.vertex - first, comment.text, comment.behind_words});
   }
+  for (const std::size_t vertex : run.speed_words) {
+    if (vertex >= first && vertex < last) part.speed_words.push_back(vertex - first);
+  }
   part.decimals = run.decimals;
   part.closed = (part.points.front() - part.points.back()).norm() <= geometry::kSamePlace;
   return part;
@@ -286,6 +289,7 @@ void add_move_of(std::uint32_t block, const gcode::Program& program,
   const RunBlocks blocks(program, meaning);
   if (of_block.motion < 0 || !blocks.moves(block)) return;
   moves.push_back({blocks.motion(block).piece, *meaning.states[of_block.state_after].feed});
+  moves.back().says_speed = blocks.says_speed(block);
 }
 
 }  // namespace

@@ -339,6 +339,10 @@ bool RunBlocks::names_motion(std::uint32_t block) const {
   return words.has_group(gcode::CodeGroup::kMotion);
 }
 
+bool RunBlocks::says_speed(std::uint32_t block) const {
+  return gcode::BlockWords(program_.words_of(program_.blocks[block])).has('S');
+}
+
 bool RunBlocks::lends_arc_word(std::uint32_t block) const {
   const MotionMode mode = read_.states[read_.blocks[block].state_after].motion;
   if (!gcode::is_arc(mode)) return false;
@@ -424,6 +428,7 @@ void RunBlocks::add_motion(std::uint32_t block, double max_chord_error, Run& run
     run.feeds.push_back({run.points.size() - 1, feed});
   }
   run.decimals = std::max(run.decimals, decimals(block, "XYZ"));
+  if (says_speed(block)) run.speed_words.push_back(run.points.size() - 1);
   if (const geometry::Arc* bend = arc(block)) {
     append_arc(*bend, names_motion(block), max_chord_error, run);
   } else {

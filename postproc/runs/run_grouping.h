@@ -80,6 +80,8 @@ class RunBlocks {
 
   // Whether it says G0, G1, G2 .. itself.
   [[nodiscard]] bool names_motion(std::uint32_t block) const;
+  // A speed of the spindle, be it the one that holds.
+  [[nodiscard]] bool says_speed(std::uint32_t block) const;
 
   // Whether a later block takes G2 or G3 from this one. Controls refuse a bare G2: it cannot be
   // said again.

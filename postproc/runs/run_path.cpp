@@ -144,11 +144,15 @@ double arc_scatter(const Run& run) {
 std::vector<TimedPiece> timed_pieces(const Run& run, std::size_t first, std::size_t last) {
   std::vector<TimedPiece> pieces;
   std::size_t next = 0;
+  auto speed = std::ranges::lower_bound(run.speed_words, first);
   double feed = 0;
   gcode::reserve_in_large_pages(pieces, last - first);
   for_each_motion(run, first, last, [&](const PathPiece& piece, std::size_t at) {
     while (next < run.feeds.size() && run.feeds[next].vertex <= at) feed = run.feeds[next++].feed;
     pieces.push_back({piece, feed});
+    if (speed == run.speed_words.end() || *speed != at) return;
+    pieces.back().says_speed = true;
+    ++speed;
   });
   return pieces;
 }

@@ -52,6 +52,7 @@ struct Run {
   double chord_error = 0;                // mm: no arc leaves the chords of its points by more
   std::vector<FeedFrom> feeds;           // each differs from the one before it; at ends of motions
   std::vector<CommentAt> comments;
+  std::vector<std::size_t> speed_words;  // vertices: the block of the motion from there says S
   int decimals = 3;  // most digits after the point of its X, Y, Z words: 4 of X.1234 in inches
   std::uint32_t state = 0;  // Interpretation::states before its first block
   bool closed = false;      // first and last point are one position

@@ -47,6 +47,7 @@ bool are_same_moves(std::span<const TimedPiece> a, std::span<const TimedPiece> b
                     const Vector3& offset) {
   return std::ranges::equal(a, b, [&](const TimedPiece& one, const TimedPiece& other) {
     return one.feed == other.feed && one.rapid == other.rapid &&
+           one.says_speed == other.says_speed &&
            one.piece.index() == other.piece.index() &&
            is_same(geometry::start_point(one.piece) + offset, geometry::start_point(other.piece)) &&
            is_same(geometry::point_at(one.piece, 0.5) + offset,
@@ -118,7 +119,7 @@ std::optional<Vector3> offset_of_repeat(RunInContext first, RunInContext run,
                          [](const FeedFrom& p, const FeedFrom& q) {
                            return p.vertex == q.vertex && p.feed == q.feed;
                          }) &&
-      are_same_moves(before.lead, now.lead, offset) && are_same_moves(before.tail, now.tail, offset);
+      a.speed_words == b.speed_words && are_same_moves(before.lead, now.lead, offset) && are_same_moves(before.tail, now.tail, offset);
   return same ? std::optional(offset) : std::nullopt;
 }
 

@@ -353,10 +353,6 @@ WholeFigures figures_with(const CutRun& cut, std::span<const RunState> pieces,
   return whole;
 }
 
-void keep(RunState& piece, std::string_view why) {
-  while (piece.chosen() != nullptr) piece.reject(why);
-}
-
 bool is_worse_in(const RunState& piece, Objection objection) {
   const Figures& now = piece.chosen()->figures;
   const Figures& old = piece.smoothed.facts.scale.original;
@@ -374,6 +370,10 @@ const Candidate* RunState::chosen() const {
 void RunState::reject(std::string_view why) {
   ++tried;
   if (chosen() == nullptr) reject_reason = why;
+}
+
+void RunState::give_up(std::string_view why) {
+  while (chosen() != nullptr) reject(why);
 }
 
 bool is_rejected_by_proof(const RunState& work) {
@@ -421,10 +421,10 @@ void revert_costly_pieces(CutRun& cut, std::vector<RunState>& works, const Smoot
     const Objection objection = objection_to(whole.after, whole.scale, options.prefer);
     if (objection == Objection::kSlower) {
       const std::size_t giving = std::max<std::size_t>(1, rewritten.size() / kRun.reverted_share);
-      for (RunState* piece : std::span(rewritten).last(giving)) keep(*piece, reason_for(objection));
+      for (RunState* piece : std::span(rewritten).last(giving)) piece->give_up(reason_for(objection));
     } else if (objection == Objection::kLarger || objection == Objection::kFarther) {
       for (RunState* piece : rewritten) {
-        if (is_worse_in(*piece, objection)) keep(*piece, reason_for(objection));
+        if (is_worse_in(*piece, objection)) piece->give_up(reason_for(objection));
       }
     } else {
       return;

@@ -40,7 +40,8 @@ struct RunState {
   std::size_t last = 0;
 
   [[nodiscard]] const Candidate* chosen() const;
-  void reject(std::string_view why);  // to its next candidate
+  void reject(std::string_view why);   // to its next candidate
+  void give_up(std::string_view why);  // all of them
   // Makes all candidates anew, also those that were left out: where none is left of the others. For
   // short runs and pieces.
   void start_again(const Run& run, const SmoothOptions& options);

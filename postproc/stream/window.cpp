@@ -377,8 +377,16 @@ class Prover {
     return !others.empty();
   }
 
+  // Of a long run that leaves the tolerance somewhere another candidate would do so elsewhere: it is
+  // cut at once.
   void reject(RunState& work, std::string_view why) {
-    work.reject(why);
+    const Run& run = std::get<Run>(runs_.sections[work.section].content);
+    const bool is_long = !work.cut_run && run.points.size() > 2 * CuttingOptions{}.longest;
+    if (is_long && why == gcode::reason::kNotProved) {
+      work.give_up(why);
+    } else {
+      work.reject(why);
+    }
     if (work.cut_run) cuts_to_time_.insert(*work.cut_run);
   }
 

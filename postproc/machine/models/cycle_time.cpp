@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "geometry/basic/rounding.h"
 #include "postproc/machine/machine_fields.h"
@@ -62,12 +63,15 @@ std::vector<TimedPiece> with_length_and_feed(std::span<const TimedPiece> pieces,
                                              const Machine& machine, double feed_override) {
   std::vector<TimedPiece> moving;
   moving.reserve(pieces.size());
+  bool says_speed = false;
   for (const TimedPiece& p : pieces) {
     if (!(p.feed >= 0)) {
       throw std::invalid_argument(fmt::format("feed is {} mm/min, expected 0 or above", p.feed));
     }
+    says_speed |= p.says_speed;
     if (!(geometry::length_of(p.piece) > geometry::kSamePlace)) continue;
     moving.push_back(p);
+    moving.back().says_speed = std::exchange(says_speed, false);
     moving.back().feed = feed_of(p, machine, feed_override);
   }
   limit_by_stream(moving, machine);

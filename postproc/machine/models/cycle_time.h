@@ -18,6 +18,7 @@ struct TimedPiece {
   double feed = 0;     // mm/min; 0: as fast as the machine cuts
   bool rapid = false;  // at the rapid rate; on Klipper at `feed`, the last one
   int bytes = 0;       // of its block, for a control that is fed by a line; 0: not known
+  bool says_speed = false;  // of the spindle: LinuxCNC begins such a block at rest
 };
 
 // What follows the chain. It matters on LinuxCNC alone, which brakes with half the

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <numbers>
 #include <span>
 #include <utility>
@@ -138,6 +139,9 @@ constexpr double kRampTime = 0.01;
 
 // A move that stops ends with a whole period: half a period is lost on average.
 constexpr double kStopPeriods = 0.5;
+
+// Cycles of the interpreter that a wait for the end of the motion takes; measured: 2.9 to 3.7.
+constexpr double kWaitPeriods = 3;
 
 // A program's Bezier pieces run as this many arcs.
 constexpr int kArcsPerBezier = 32;
@@ -405,8 +409,10 @@ class Queue {
 }  // namespace
 }  // namespace linuxcnc
 
-StretchChain linuxcnc_stretches(std::span<const TimedPiece> pieces, const Machine& machine,
-                                gcode::PathMode path, ChainEnd end, WithPositions places) {
+namespace {
+
+StretchChain stretches_in_one(std::span<const TimedPiece> pieces, const Machine& machine,
+                              gcode::PathMode path, ChainEnd end, WithPositions places) {
   linuxcnc::Queue queue(machine, path, places);
   const bool joins = path != gcode::PathMode::kExactStop && path != gcode::PathMode::kExactPath;
   const double tolerance = joins ? machine.naive_cam_tolerance : 0;
@@ -423,6 +429,37 @@ StretchChain linuxcnc_stretches(std::span<const TimedPiece> pieces, const Machin
     }
   }
   return queue.finish(end);
+}
+
+}  // namespace
+
+// A speed of the spindle, the one that holds as well, waits for the motion before it to end.
+StretchChain linuxcnc_stretches(std::span<const TimedPiece> pieces, const Machine& machine,
+                                gcode::PathMode path, ChainEnd end, WithPositions places) {
+  StretchChain chain;
+  std::size_t first = 0;
+  do {
+    const std::span<const TimedPiece> rest = pieces.subspan(first);
+    const auto more = rest.subspan(std::min<std::size_t>(rest.size(), 1));
+    const auto wait = std::ranges::find_if(more, &TimedPiece::says_speed);
+    const auto count = rest.size() - static_cast<std::size_t>(more.end() - wait);
+    const bool is_last = count == rest.size();
+    StretchChain part = stretches_in_one(rest.first(count), machine, path,
+                                         is_last ? end : ChainEnd::kEndOfMotion, places);
+    if (is_last && first == 0) return part;
+    // The interpreter goes on when it has seen the rest, in its next cycles.
+    part.rules.stop_time += linuxcnc::kWaitPeriods * machine.block_period;
+    if (!part.stretches.empty()) part.stretches.back().exit_velocity = 0;
+    for (StretchPlace& place : part.places) {
+      place.first_piece += static_cast<std::uint32_t>(first);
+      place.last_piece += static_cast<std::uint32_t>(first);
+    }
+    chain.rules = part.rules;
+    std::ranges::move(part.stretches, std::back_inserter(chain.stretches));
+    std::ranges::move(part.places, std::back_inserter(chain.places));
+    first += count;
+  } while (first < pieces.size());
+  return chain;
 }
 
 }  // namespace batten::postproc

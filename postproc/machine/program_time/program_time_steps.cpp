@@ -142,7 +142,7 @@ class StepWork {
       case BlockKind::kEmpty:
         return;
       case BlockKind::kMotion:
-        return add_motion(BlockWords(program_->words_of(block())));
+        return add_plain_motion(BlockWords(program_->words_of(block())));
       case BlockKind::kSettings:
       case BlockKind::kMotionAndMore:
         return read_words(BlockWords(program_->words_of(block())));
@@ -379,6 +379,11 @@ class StepWork {
       return add_wait(StepKind::kRotary, 60 / *feed);
     }
     note(not_timed::kRotaryAxis);
+  }
+
+  void add_plain_motion(const BlockWords& words) {
+    add_motion(words);
+    read_.steps.back().says_speed = words.has('S');
   }
 
   void add_motion(const BlockWords& words) {

@@ -124,6 +124,12 @@ Chain circle_of_lines(double feed, int lines) {
   return p.chain();
 }
 
+// With a speed of the spindle in every so many of its blocks.
+Chain with_speeds(Chain chain, std::size_t every) {
+  for (std::size_t i = every; i < chain.size(); i += every) chain[i].says_speed = true;
+  return chain;
+}
+
 struct MeasuredCase {
   std::string name;
   Chain chain;
@@ -166,7 +172,12 @@ INSTANTIATE_TEST_SUITE_P(
                     MeasuredCase{"HelixBlended", helix(), kG64, 0.01, 1.084},
                     MeasuredCase{"StarExactPath", star(), kG61, 0, 3.413},
                     MeasuredCase{"StarBlendedFreely", star(), kG64, 0, 2.862},
-                    MeasuredCase{"StarBlended", star(), kG64, 0.01, 3.327}),
+                    MeasuredCase{"StarBlended", star(), kG64, 0.01, 3.327},
+                    MeasuredCase{"CircleWithSpeeds", with_speeds(circle_of_lines(6000, 300), 1),
+                                 kG64, 0.01, 9.253},
+                    MeasuredCase{"CircleWithAFewSpeeds",
+                                 with_speeds(circle_of_lines(6000, 300), 10), kG64, 0.01, 2.459},
+                    MeasuredCase{"ZigzagWithSpeeds", with_speeds(zigzag(), 5), kG64, 0.01, 4.298}),
     [](const auto& test) { return test.param.name; });
 
 // Lines over waves of 4 mm, where Z may do 40 mm/s: 100 mm/s on the crests, 51 mm/s on the slopes.

@@ -5,9 +5,30 @@
 
 #include "postproc/runs/run_path.h"
 #include "tests/support/one_run.h"
+#include "tests/support/wavy_programs.h"
 
 namespace batten::postproc {
 namespace {
+
+// A wave with the speed of its spindle in each block, as some posts write it.
+std::string wave_with_speeds() {
+  return head("G21") + joined(wave_lines({}), " S12000\n") + tail();
+}
+
+TEST(RunTimes, HaveARestAtEachSpeedOfTheSpindleOnLinuxcnc) {
+  const SmoothResult with = smoothed(wave_with_speeds(), options_for("linuxcnc"));
+  const SmoothResult without = smoothed(wave_program(), options_for("linuxcnc"));
+  EXPECT_GT(with.runs_before_s, 3 * without.runs_before_s);
+  EXPECT_EQ(rewritten_runs(with), 1U);
+  EXPECT_NEAR(with.runs_after_s, without.runs_after_s, 0.01 * without.runs_after_s);
+  EXPECT_EQ(with.text.find("S12000", with.text.find("F2000")), std::string::npos);
+}
+
+TEST(RunTimes, AreThoseOfTheWayWhereSpeedsOfTheSpindleDoNotWait) {
+  const SmoothResult with = smoothed(wave_with_speeds(), options_for("grbl"));
+  const SmoothResult without = smoothed(wave_program(), options_for("grbl"));
+  EXPECT_EQ(with.runs_before_s, without.runs_before_s);
+}
 
 // A half circle of 31.4 mm at 3000 mm/min: far from what limits the axes at half of the feed.
 TEST(RunTimes, FollowTheOverrideAsFarAsTheMachineCan) {
