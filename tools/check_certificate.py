@@ -17,10 +17,12 @@ All lengths are whole numbers of a step of 1e-9 mm or less, so that every printe
 docs/certificates.md says what is proved, and under which reading of the control."""
 
 import argparse
+import ast
 import copy
 import hashlib
 import itertools
 import math
+import operator
 import re
 import sys
 import types
@@ -29,38 +31,53 @@ from fractions import Fraction
 PLACES = 1 << 30  # a place on a chord is a whole number of these parts of it
 KNOWN_OFF = ("cutter compensation", "scaling", "mirroring", "rotation", "polar coordinates",
              "diameter mode", "modal macro", "tool centre point control", "cylinder interpolation")
+OPERATIONS = {ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv,
+              ast.UAdd: operator.add, ast.USub: operator.sub}
 CHORD_SHARES = (Fraction(1, 300), Fraction(1, 5000), Fraction(1, 50000))  # of the tolerance: errors of chords
 
 class Refused(Exception):
     """Why there is no certification; the line is added by those who know it."""
+def refuse_if(wrong, why):
+    if wrong:
+        raise Refused(why)
 
 # --- numbers -------------------------------------------------------------------------------------
-
 class Scale:
     """Printed numbers as whole steps: 10^digits of them are a millimetre."""
-
     def __init__(self, texts):
         longest = max((len(m) for text in texts for m in re.findall(r"\.(\d+)", text)), default=0)
-        self.digits = max(9, longest + 1)
+        self.digits = max(9, (longest + 1) * (2 if "[" in texts[0] else 1))
         self.per_mm = 10 ** self.digits
 
     def length(self, text, inch):
         whole, _, part = text.partition(".")
         number = int(whole + part) if whole.strip("+-") + part else 0
-        if inch:
-            return number * 254 * 10 ** (self.digits - len(part) - 1)
-        return number * 10 ** (self.digits - len(part))
+        return number * (254 * 10 ** (self.digits - len(part) - 1) if inch else 10 ** (self.digits - len(part)))
+
+def decimal_of(expression):
+    """The text of its value, exactly; nothing where it is none of + - * / or has too many digits."""
+    def value_of(node):
+        if isinstance(node, ast.UnaryOp):
+            return OPERATIONS[type(node.op)](0, value_of(node.operand))
+        if isinstance(node, ast.BinOp):
+            return OPERATIONS[type(node.op)](value_of(node.left), value_of(node.right))
+        return Fraction(repr(node.value))
+    try:
+        value = value_of(ast.parse(re.sub(r"(?<![\d.])0+(?=\d)", "", expression), mode="eval").body)
+    except (SyntaxError, AttributeError, KeyError, ValueError, ZeroDivisionError):
+        return None
+    digits = next((n for n in range(9) if 10 ** n % value.denominator == 0), None)
+    return None if digits is None else f"{'-' * (value < 0)}{abs(value) // 1}." + str(
+        int(abs(value) % 1 * 10 ** digits)).rjust(digits, "0")
 
 def root_up(square):
     """The least whole number that is not below the root."""
-    root = math.isqrt(square)
-    return root if root * root == square else root + 1
+    return math.isqrt(square - 1) + 1 if square > 0 else 0
 
 def round_up(number):
     return -((-number) // 1)
 
 # --- paths: pieces to chords ---------------------------------------------------------------------
-#
 # A piece is a tuple: ("line", start, end); ("arc", start, end, centre, axes, turn, slack) with the axes (i, j, k) of
 # its plane, turn 1 for counter-clockwise and the slack of a rounded centre; ("cubic", b0, b1, b2, b3). Points are
 # lists of three whole numbers or, of cubics, fractions.
@@ -74,8 +91,7 @@ def arc_chords(piece, most_error):
     ax, ay = start[i] - centre[0], start[j] - centre[1]
     bx, by = end[i] - centre[0], end[j] - centre[1]
     r0, r1 = math.isqrt(ax * ax + ay * ay), math.isqrt(bx * bx + by * by)
-    if min(r0, r1) < 1000:
-        raise Refused("an arc without a radius")
+    refuse_if(min(r0, r1) < 1000, "an arc without a radius")
     cross, dot = turn * (ax * by - ay * bx), ax * bx + ay * by
     full = start[i] == end[i] and start[j] == end[j]
     angle = 2 * math.pi if full else math.atan2(cross, dot) % (2 * math.pi)
@@ -100,8 +116,7 @@ def arc_chords(piece, most_error):
     for point in points[1:]:
         vx, vy = point[i] - centre[0], point[j] - centre[1]
         cross_n, dot_n = turn * (ux * vy - uy * vx), ux * vx + uy * vy
-        if cross_n <= 0 or dot_n <= 2 * cross_n:
-            raise Refused("an arc that is too small to be cut into chords")
+        refuse_if(cross_n <= 0 or dot_n <= 2 * cross_n, "an arc that is too small to be cut into chords")
         t = cross_n * fine // dot_n
         t3 = t * t // fine * t // fine
         t5 = t3 * t // fine * t // fine
@@ -111,8 +126,7 @@ def arc_chords(piece, most_error):
         ux, uy = vx, vy
     # No turn too many: the tangents bound the angle from above.
     most = 2 * math.pi if cross > 0 and not full else 9
-    if sum_of_tangents > most * fine * 0.999:
-        raise Refused("an arc whose angle is not certain")
+    refuse_if(sum_of_tangents > most * fine * 0.999, "an arc whose angle is not certain")
     whole = sum(angles)
     unsure = 2 * Fraction(greatest, fine) ** 6 / 7 + Fraction(8 * count, whole)
     radial = round_up(growth * unsure) + 4 + slack
@@ -151,7 +165,6 @@ def cubic_chords(piece, most_error):
 
 class Chords:
     """A chain of pieces as points, an error for each chord, and the first chord of each piece."""
-
     def __init__(self, pieces, start, most_error):
         self.points, self.errors, self.first = [start], [], []
         for piece in pieces:
@@ -167,8 +180,7 @@ class Chords:
 
     def place(self, piece, part):
         """(chord, parts of PLACES) of a fraction of a piece, the end of the chord before if 0."""
-        if piece >= len(self.first):
-            raise Refused("a pair of the certificate is beyond the end of the path")
+        refuse_if(piece >= len(self.first), "a pair of the certificate is beyond the end of the path")
         if piece == len(self.first) - 1 or part == 0:
             return (self.first[piece] - 1, PLACES) if self.first[piece] > 0 else (0, 0)
         count = self.first[piece + 1] - self.first[piece]
@@ -179,7 +191,6 @@ class Chords:
         return len(self.errors) - 1, PLACES
 
 # --- passing two paths together ------------------------------------------------------------------
-
 def pass_together(a, b, pairs, tolerance):
     """From pair to pair: each time the nearer of two steps is taken, to the next corner of one chain and to what is
     nearest to it on the chord of the other. Between two stops both run evenly along one chord, so the distance is
@@ -241,11 +252,9 @@ def pass_together(a, b, pairs, tolerance):
     return root_up(greatest) // PLACES + 1 if greatest else 0
 
 # --- what a control remembers --------------------------------------------------------------------
-
 class State:
     """Of the control, as far as lines that are rewritten can depend on it or change it. None: not
     known; axes that no line has named stay None, too."""
-
     FIELDS = ("place", "motion", "feed", "plane", "absolute", "centres_absolute", "inch",
               "feed_mode", "off", "pole", "speed")
     __slots__ = FIELDS
@@ -269,8 +278,8 @@ class State:
 def line_of(text):
     """What a line says. `words`: letter, text of the number; `silent`: nothing that acts; `title`: no code that a
     control could follow is in it."""
-    return types.SimpleNamespace(words=[], comment="", known=True, number=False, silent=False, computed="[" in text,
-                                 title=TITLE.match(text) and not CODE.search(text))
+    return types.SimpleNamespace(words=[], comment="", known=True, number=False, silent=False, sets=False,
+                                 computed="[" in text, title=TITLE.match(text) and not CODE.search(text))
 
 AXES, OFFSETS = "XYZ", "IJK"
 MOTIONS = {"0": 0, "1": 1, "2": 2, "3": 3}
@@ -305,7 +314,6 @@ SIEMENS_CODES.update({"G70": ("inch", True), "G71": ("inch", False), "G700": ("i
 SIEMENS_NOT = "G50 G51 G52 G5.1 G31 G98 G99 G73 G74 G76 G81 G10 G92 G68 G69 G15 G16 G7 G8".split()
 
 # --- reading lines -------------------------------------------------------------------------------
-
 WORD = re.compile(r"([A-Z])([-+]?(?:\d+\.?\d*|\.\d+))")
 SIEMENS_WORD = re.compile(r"(CR=|[A-Z]=?)([-+]?(?:\d+\.?\d*|\.\d+))|(FFWON|FFWOF|SOFT|BRISK|STOPRE|COMPOF|COMPON|"
                           r"COMPCAD|COMPCURV|COMPSURF|POLY|DIAMOF|CYCLE832\([^()]*\)|MSG\([^()]*\)|CUT2DF?)|"
@@ -317,22 +325,21 @@ JUMPS = re.compile(r"\b(GOTO[FBC]?|WHILE|REPEATB?|ENDLOOP|UNTIL)\b|\bM99\s*P|\bM
 OWN_COMMENT = re.compile(r"\s*(?:\d+\s+)?(?:\(Batten: smoothed within [\d.]+ (?:mm|in)\)|"
                          r";\s*Batten: smoothed within [\d.]+ (?:mm|in))\s*", re.I)
 ASSIGNMENT = re.compile(r"(?:N\d+)?#(?:\d{1,3}|<[A-Z_]+>)=[-+*/.\d#\[\]]+")  # of a parameter that is no offset
+SETTING = re.compile(r"(?:N\d+)?#<([A-Z][A-Z0-9_]*)>=([-+]?(?:\d+\.?\d*|\.\d+))", re.I)
+FLOW = re.compile(r"^\s*(N\d+\s*)?O[<\d]", re.I)  # subprograms, conditions, loops
 TITLE = re.compile(r"[^#=\[\]$]*$")
 CODE = re.compile(r"(?<![A-Z0-9])[GMOT]\s*\d", re.I)
 
 def canonical(letter, number):
     """G01 is G1; 43.10 is none."""
-    whole, _, part = number.partition(".")
-    part = part.rstrip("0")
+    whole, _, part = number.rstrip("0" if "." in number else "").partition(".")
     return letter + str(int(whole or 0)) + ("." + part if part else "") if whole.isdigit() else ""
 
 def read_words(text, siemens):
     """A line of plain words; of Siemens words."""
     line = line_of(text)
-    body = text
-    if ";" in body:
-        body, _, rest = body.partition(";")
-        line.comment = ";" + rest.strip()
+    body, found, rest = text.partition(";")
+    line.comment = ";" + rest.strip() if found else ""
     if "(" in body:
         # Behind a Siemens name they are arguments.
         pattern = r"(?<![\w=\]])\([^()]*\)" if siemens else r"\([^()]*\)"
@@ -343,7 +350,8 @@ def read_words(text, siemens):
             line.words = [("message", "")]
     line.known = not SCRIPT.search(text)
     body = "".join(body.upper().split())
-    if body in ("", "%") or not siemens and ASSIGNMENT.fullmatch(body):
+    line.sets = not siemens and bool(ASSIGNMENT.fullmatch(body))
+    if body in ("", "%") or line.sets:
         line.silent = line.known and not line.words
         return line
     found = list((SIEMENS_WORD if siemens else WORD).finditer(body))
@@ -360,7 +368,6 @@ def read_words(text, siemens):
     return line
 
 KLARTEXT_WORD = re.compile(r"(I?[XYZ])([-+]?[\d.,]+)|(DR)([-+])|(R)([0LR])(?![\d.])|(F)(MAX|AUTO|\d+(?:[.,]\d*)?)|(M)(\d+)")
-
 def read_klartext(text):
     """The words of L, CC and C; of other statements only their name."""
     line = line_of(text)
@@ -384,12 +391,13 @@ def read_klartext(text):
     return line
 
 # --- following lines -----------------------------------------------------------------------------
-
 class Reader:
     """Follows the lines of one control."""
-
-    def __init__(self, control, scale):
-        self.control, self.scale = control, scale
+    def __init__(self, control, scale, old_lines):
+        self.control, self.scale, self.values = control, scale, {}
+        names = re.findall(r"#<([A-Z][A-Z0-9_]*)>=", "".join("".join(old_lines).upper().split(" ")))
+        steady = control == "linuxcnc" and not any(FLOW.match(line) or JUMPS.search(line) for line in old_lines)
+        self.constants = {name for name in names if steady and names.count(name) == 1}
         self.siemens, self.klartext = control == "siemens", control == "heidenhain"
         self.codes = dict(CODES)
         if self.siemens:
@@ -399,7 +407,23 @@ class Reader:
         self.nurbs, self.begun = None, False  # points and knots of a curve; whether words were before
 
     def read(self, text):
+        if self.constants and "#" in text:
+            text = self.with_values(text)
         return read_klartext(text) if self.klartext else read_words(text, self.siemens)
+
+    def with_values(self, text):
+        """With numbers for named parameters that the program sets once, to a number, and has set before."""
+        setting = SETTING.fullmatch("".join(text.split()))
+        if setting and setting[1].upper() in self.constants:
+            self.values[setting[1].upper()] = setting[2]
+        elif not setting:
+            text = re.sub(r"#<(\w+)>", lambda name: self.values.get(name[1].upper(), name[0]), text)
+            while inner := re.search(r"\[([^\[\]#]*)\]", text):
+                value = decimal_of(inner[1])
+                if value is None:
+                    break
+                text = text[:inner.start()] + value + text[inner.end():]
+        return text
 
     def follow(self, line, state, in_run):
         """Moves: ("rapid" or "cut", piece, feed), and the state after the line. False: not known,
@@ -450,8 +474,7 @@ class Reader:
                 state.motion, self.nurbs, state.feed = "G6.2", ([], []), feed if feed is not None else state.feed
                 return self.nurbs_line(state, axes, offsets, others)
             if code[0] == "G" and code[1:] in MOTIONS:
-                if motion is not None:
-                    raise Refused("two motion words")
+                refuse_if(motion is not None, "two motion words")
                 motion = MOTIONS[code[1:]]
             elif code == "G5" and self.control == "linuxcnc":
                 motion = "G5"
@@ -462,8 +485,7 @@ class Reader:
             else:
                 raise Refused(f"{code} is not known")
         if "POLY" in names:
-            if motion is not None:
-                raise Refused("two motion words")
+            refuse_if(motion is not None, "two motion words")
             motion = "POLY"
         if "O" in others and (self.begun or len(others) > 1) or "L" in others and self.siemens:
             raise Refused("another program")
@@ -511,8 +533,7 @@ class Reader:
 
     def motion_of(self, state, axes, offsets, others, polynomials):
         motion = state.motion
-        if polynomials and motion != "POLY":
-            raise Refused("PO without POLY, which runs straight")
+        refuse_if(polynomials and motion != "POLY", "PO without POLY, which runs straight")
         if motion == "other" or motion is None and (offsets or state.absolute is None):
             state.place = (None, None, None)
             return [("unknown", None, None)] if motion is None else []
@@ -528,16 +549,14 @@ class Reader:
             return [("unknown", None, state.feed)]
         p, q = ([0 if x is None else x for x in point] for point in (start, end))
         if motion == 1:
-            if offsets or others.keys() & {"R", "CR", "P", "Q"}:
-                raise Refused("words of a curve beside a line")
+            refuse_if(offsets or others.keys() & {"R", "CR", "P", "Q"}, "words of a curve beside a line")
             return [("cut", ("line", p, q), state.feed)] if p != q else []
         if motion == "G5":
             return [("cut", self.g5(state, p, q, axes, offsets, others), state.feed)]
         return [("cut", self.arc(state, p, q, start, offsets, others), state.feed)]
 
     def length(self, text, state):
-        if state.inch is None:
-            raise Refused("the unit is not known")
+        refuse_if(state.inch is None, "the unit is not known")
         if self.control == "fanuc" and "." not in text and Fraction(text) != 0:
             raise Refused(f"{text} has no decimal point: 5 mm or 0.005 mm on this control")
         return self.scale.length(text, state.inch)
@@ -554,11 +573,9 @@ class Reader:
         return tuple(end)
 
     def arc(self, state, p, q, start, offsets, others):
-        if state.plane is None or state.centres_absolute is None:
-            raise Refused("an arc whose plane or centre is not known")
+        refuse_if(state.plane is None or state.centres_absolute is None, "an arc whose plane or centre is not known")
         i, j, k = PLANE_AXES[state.plane]
-        if start[i] is None or start[j] is None:
-            raise Refused("an arc from an unknown place")
+        refuse_if(start[i] is None or start[j] is None, "an arc from an unknown place")
         if Fraction(offsets.get(OFFSETS[k], "0")) != 0 or others.keys() - {"R", "CR", "F"} & {"P", "Q"}:
             raise Refused("an arc with words of another one")
         turn = 1 if state.motion == 3 else -1
@@ -566,13 +583,11 @@ class Reader:
         if radius_words and not offsets and len(radius_words) == 1:
             radius = self.length(others[radius_words.pop()], state)
             return arc_of_radius(p, q, radius, (i, j, k), turn)
-        if not offsets or radius_words:
-            raise Refused("an arc without one centre")
+        refuse_if(not offsets or radius_words, "an arc without one centre")
         centre = []
         for axis in (i, j):
             number = self.length(offsets.get(OFFSETS[axis], "0"), state)
-            if state.centres_absolute and OFFSETS[axis] not in offsets:
-                raise Refused("an arc without its whole centre")
+            refuse_if(state.centres_absolute and OFFSETS[axis] not in offsets, "an arc without its whole centre")
             centre.append(number if state.centres_absolute else p[axis] + number)
         return self.arc_about(p, q, centre, (i, j, k), turn)
 
@@ -599,8 +614,7 @@ class Reader:
             raise Refused("a curve that is not written as one of order 4 without weights")
         knots.append(Fraction(offsets["K"]))
         if axes:
-            if len(knots) > len(points) + 1:
-                raise Refused("a curve with a control point behind its last knots")
+            refuse_if(len(knots) > len(points) + 1, "a curve with a control point behind its last knots")
             points.append([self.length(axes[letter], state) if letter in axes else
                            (points[-1] if points else start)[n] for n, letter in enumerate(AXES)])
             return []
@@ -623,15 +637,13 @@ class Reader:
         """POLY of Siemens: end, a2, a3 of each axis; a1 is what the end leaves."""
         if not state.absolute or None in (start[n] for n in range(3) if f"PO[{AXES[n]}]" in polynomials):
             raise Refused("a polynomial from an unknown place")
-        if Fraction(polynomials.get("PL", "1")) != 1:
-            raise Refused("PL other than 1")
+        refuse_if(Fraction(polynomials.get("PL", "1")) != 1, "PL other than 1")
         control, end = [[], [], [], []], list(start)
         for n, letter in enumerate(AXES):
             a0 = start[n] if start[n] is not None else 0
             if f"PO[{letter}]" in polynomials:
                 numbers = [self.length(t, state) for t in polynomials[f"PO[{letter}]"].strip("()").split(",") if t]
-                if not 1 <= len(numbers) <= 3 or letter in axes:
-                    raise Refused("a polynomial of another kind")
+                refuse_if(not 1 <= len(numbers) <= 3 or letter in axes, "a polynomial of another kind")
                 end[n], a2, a3 = (numbers + [0, 0])[:3]
             else:
                 end[n], a2, a3 = self.end_of(state, axes)[n], 0, 0
@@ -658,9 +670,9 @@ class Reader:
         elif name == "TOOL" and rest.startswith("CALL"):
             state.place, feed = (None, None, None), re.search(r"\bF(\d+)", rest)
             state.feed = (Fraction(feed.group(1)), False) if feed else state.feed
+        axes, others, codes = {}, {}, []
         if name not in ("L", "CC", "C"):
             return []
-        axes, others, codes = {}, {}, []
         for letter, text in words:
             if letter == "M":
                 codes.append(int(text))
@@ -672,22 +684,19 @@ class Reader:
         if in_run and (codes or others.get("F") in ("MAX", "AUTO") or others.get("R", "0") != "0" or
                        any(letter[0] == "I" for letter in axes)):
             raise Refused("more than moves to places among rewritten lines")
-        if set(codes) - {0, 1, 2, 3, 4, 5, 6, 8, 9, 13, 14, 30}:
-            raise Refused("an M function that is not known")
+        refuse_if(set(codes) - {0, 1, 2, 3, 4, 5, 6, 8, 9, 13, 14, 30}, "an M function that is not known")
         values = {}
         for letter, text in axes.items():
             n, number = AXES.index(letter[-1]), self.length(text, state)
             here = state.place[n] if letter[0] == "I" else 0
             values[n] = None if here is None else here + number
         if name == "CC":
-            if axes.keys() != {"X", "Y"} or others:
-                raise Refused("a pole that is not written whole")
+            refuse_if(axes.keys() != {"X", "Y"} or others, "a pole that is not written whole")
             state.pole = (values[0], values[1])
             return []
-        start, end = state.place, tuple(values.get(n, state.place[n]) for n in range(3))
-        state.place = end
-        rapid = others.get("F") == "MAX"
-        if "F" in others and not rapid:
+        start = state.place
+        end = state.place = tuple(values.get(n, start[n]) for n in range(3))
+        if "F" in others and others["F"] != "MAX":
             state.feed = (Fraction(others["F"]), False) if others["F"] != "AUTO" else None
         if "R" in others:
             state.off = state.off | {KNOWN_OFF[0]} if others["R"] == "0" else state.off - {KNOWN_OFF[0]}
@@ -696,7 +705,7 @@ class Reader:
             state.forget()
         if set(codes) & {2, 30} or name == "L" and not axes:
             return []
-        if rapid:
+        if others.get("F") == "MAX":
             return [("rapid", (start, end), None)]
         if any(start[n] is None or end[n] is None for n in values):
             return [("unknown", None, state.feed)]
@@ -735,14 +744,11 @@ def arc_of_radius(p, q, radius, axes, turn):
     return ("arc", p, q, centre, axes, turn, slack)
 
 # --- the two programs ----------------------------------------------------------------------------
-
 def read_certificate(text, tolerance):
     version, *lines = text.split("\n")
     said = re.fullmatch(r"tolerance ([\d.]+(?:e-?\d+)?) mm", lines[0]) if lines else None
-    if version != "Batten certificate 1":
-        raise Refused("the certificate does not begin as one of version 1")
-    if not said or Fraction(said.group(1)) > tolerance:
-        raise Refused("the certificate is of another tolerance")
+    refuse_if(version != "Batten certificate 1", "the certificate does not begin as one of version 1")
+    refuse_if(not said or Fraction(said.group(1)) > tolerance, "the certificate is of another tolerance")
     runs = []
     for line in lines[1:]:
         header = re.fullmatch(r"run (\d+) (\d+) (\d+) (\d+)", line)
@@ -757,7 +763,6 @@ def read_certificate(text, tolerance):
     return runs
 
 PAIR = re.compile(r"(\d+)(?:\.(\d{1,9}))?(?::(\d+)(?:\.(\d{1,9}))?)?(?:\*(\d{1,7}))?")
-
 def pairs_of(words):
     """For each part of one feed: places on both paths, as a piece and a fraction of it."""
     parts, old, new = [[]], 0, 0
@@ -783,14 +788,13 @@ def by_feed(moves):
 class Checker:
     def __init__(self, old_lines, new_lines, runs, options, scale):
         self.old_lines, self.new_lines, self.runs = old_lines, new_lines, runs
-        self.reader = Reader(options.control, scale)
+        self.reader = Reader(options.control, scale, old_lines)
         self.tolerance = int(options.tolerance * scale.per_mm)  # rounded down: stricter
         self.added = set(line.strip() for line in options.added_line)
         # One value while both remember the same.
         self.old = self.new = State(options.units == "inch" if options.units else None)
         self.jumps = any(JUMPS.search(line) for line in old_lines)
-        self.i = self.j = 0
-        self.greatest = self.greatest_line = self.own_comments = self.added_lines = 0
+        self.i = self.j = self.greatest = self.greatest_line = self.own_comments = self.added_lines = 0
         self.rewritten = [0, 0]
         # The last line that was copied, none behind a run; why the modes are not known, where they are not.
         self.neighbour, self.forgotten = "begin", ""
@@ -806,10 +810,8 @@ class Checker:
                 self.refuse("a run of the certificate goes beyond the end")
             self.check_run(run)
         self.copy_to(len(self.old_lines), len(self.new_lines))
-        for field in self.old.differing(self.new):
-            if field not in ("motion", "pole", "place"):
-                self.refuse(f"at the end {field} is {getattr(self.new, field)}, "
-                            f"and was {getattr(self.old, field)}")
+        for field in set(self.old.differing(self.new)) - {"motion", "pole", "place"}:
+            self.refuse(f"at the end {field} is {getattr(self.new, field)}, and was {getattr(self.old, field)}")
 
     def copy_to(self, old_end, new_end):
         if old_end - self.i != new_end - self.j or old_end < self.i:
@@ -920,7 +922,7 @@ class Checker:
                 found, _ = self.reader.follow(line, state, True)
             except Refused as why:
                 self.refuse(f"{why}", *where)
-            if any(kind != "cut" for kind, _, _ in found):
+            if line.sets or any(kind != "cut" for kind, _, _ in found):
                 self.refuse("a rewritten line that is no move at feed rate between known places", *where)
             moves += found
         if self.reader.nurbs is not None:
@@ -954,7 +956,6 @@ class Checker:
         return [list(a.points[-1]), list(b.points[-1])]
 
 # --- the command ---------------------------------------------------------------------------------
-
 def main(arguments=None):
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("files", nargs=3, metavar="FILE", help="OLD NEW CERTIFICATE")

@@ -207,7 +207,7 @@ class Pair:
     def damage_mode_line(self):
         n = self.chance.choice(self.moves)
         word = self.chance.choice(["L M8", "CYCL DEF 7.0", "LBL 1", "L FMAX"] if self.source.klartext else
-                                  "G91 G20 G18 G41 M0 T2 G0 G93 G92 S5 G68".split())
+                                  "G91 G20 G18 G41 M0 T2 G0 G93 G92 S5 G68 #5=1.".split())
         lines, certificate = self.refitted(n, self.lines[:n] + [word] + self.lines[n:], 1)
         return "mode line", True, lines, certificate
 
