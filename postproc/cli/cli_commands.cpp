@@ -657,6 +657,13 @@ TimeCommand time_command(Arguments& in) {
         "--machine: no machine given; `batten machines` lists them, a file NAME.toml is your own");
   }
   command.start = start_given(in);
+  command.bound = in.given.has("bound");
+  std::optional<double> inch;
+  command.tolerance_mm = tolerance_in(in.given.value("tolerance"), in, inch);
+  if (command.tolerance_mm && !(*command.tolerance_mm > 0)) {
+    in.complain("--tolerance: '{}', expected a length above 0, such as 0.01",
+                in.given.text("tolerance"));
+  }
   check_files({"FILE"}, in);
   check_time_outputs(command, in);
   return command;

@@ -203,6 +203,10 @@ std::vector<OptionRow> time_rows() {
           kSource,
           kDecimals,
           option("from", kValue, "X,Y,Z", "the tool's position before the program, mm"),
+          option("bound", kFlag, "", "tell how much time is left to win in the runs, and where"),
+          option("tolerance", kValue, "LENGTH",
+                 "for --bound: by paths that are so near, 0.01, 0.01mm or 0.0005in; default: on "
+                 "the path as it is"),
           kJson,
           kReport,
           kOpen,
@@ -331,6 +335,7 @@ std::vector<CommandRow> make_command_rows() {
        "  batten time part.nc --machine linuxcnc\n"
        "  batten time part.nc --machine mill --json part.json --from 0,0,50\n"
        "  batten time part.nc --machine router.toml --profile part.csv\n"
+       "  batten time part.nc --machine router --bound --tolerance 0.01\n"
        "The profile has a row for each millisecond: t_s, line, x_mm, y_mm, z_mm,\n"
        "feed_mm_per_min, then acceleration (mm/s2) and jerk (mm/s3) of X, Y and Z.\n"
        "Times are those of the control's model; what the text does not tell is listed."},

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <vector>
 
 #include "gcode/interpreter/interpreter.h"
@@ -15,6 +16,7 @@
 #include "postproc/machine/program_time/program_time_profile.h"
 #include "postproc/report/html_report.h"
 #include "postproc/report/time_report.h"
+#include "postproc/stream/time_bounds.h"
 #include "postproc/system/exit_code.h"
 #include "postproc/system/interrupt.h"
 
@@ -95,7 +97,10 @@ int run(const TimeCommand& command) {
   const StepOptions options = {.dwell_unit = dwell_unit_of(command.target, *command.machine),
                                .start = command.start};
   const ProgramTime time = time_program(program, meaning, *command.machine, options);
-  const TimeReport report{program, *command.machine, time, found, command.own_words, called.files};
+  std::optional<TimeBounds> bounds;
+  if (command.bound) bounds = time_bounds(program, meaning, *command.machine, command.tolerance_mm);
+  const TimeReport report{program,           *command.machine, time,  found,
+                          command.own_words, called.files,     bounds};
   const bool standard_output_taken =
       command.json_file == "-" || command.profile_file == "-" || command.page.file == "-";
   if (!standard_output_taken) {

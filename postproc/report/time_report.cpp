@@ -111,6 +111,56 @@ void add_slow_places(const ProgramTime& time, std::string& lines) {
   }
 }
 
+Json json_of(const BoundedTime& seconds) {
+  return {{"time_s", seconds.time},
+          {"least_on_path_s", seconds.least_on_path},
+          {"least_within_s", seconds.least_within ? Json(*seconds.least_within) : Json()}};
+}
+
+Json json_of(const RunBound& run) {
+  Json entry = {{"first_line", run.first_line}, {"last_line", run.last_line}};
+  entry.update(json_of(run.seconds));
+  return entry;
+}
+
+Json json_of(const TimeBounds& bounds) {
+  Json entry = {{"tolerance_mm", bounds.tolerance_mm ? Json(*bounds.tolerance_mm) : Json()}};
+  entry.update(json_of(bounds.seconds));
+  entry["runs"] = json_list(bounds.runs, [](const RunBound& run) { return json_of(run); });
+  return entry;
+}
+
+std::string left_text(const BoundedTime& seconds) {
+  const double left = seconds.time - seconds.least();
+  return fmt::format("at most {} of {} ({:.1f} %)", seconds_text(left), seconds_text(seconds.time),
+                     seconds.time > 0 ? 100 * left / seconds.time : 0);
+}
+
+void add_bounds(const TimeBounds& bounds, std::string& lines) {
+  if (bounds.runs.empty()) {
+    lines += titled("to win", "no run that may be rewritten");
+    return;
+  }
+  const BoundedTime& all = bounds.seconds;
+  lines +=
+      titled("to win", fmt::format("{} in {}", left_text(all), plural(bounds.runs.size(), "run")));
+  std::string least =
+      fmt::format("no feed plan takes less than {} on this path", seconds_text(all.least_on_path));
+  if (bounds.tolerance_mm) {
+    least += fmt::format(", and none on a path within {:g} mm less than {}", *bounds.tolerance_mm,
+                         seconds_text(all.least()));
+  }
+  lines += titled("", least);
+  for (std::size_t i = 0; i < std::min(bounds.runs.size(), kMostPlaces); ++i) {
+    const RunBound& run = bounds.runs[i];
+    lines += titled(
+        "", fmt::format("lines {}-{}: {}", run.first_line, run.last_line, left_text(run.seconds)));
+  }
+  if (bounds.runs.size() > kMostPlaces) {
+    lines += titled("", fmt::format("{} more, see --json", bounds.runs.size() - kMostPlaces));
+  }
+}
+
 void add_not_timed(const ProgramTime& time, std::string& lines) {
   std::string_view title = "not certain";
   for (const NotTimed& entry : time.not_timed) {
@@ -143,6 +193,7 @@ Json time_json(const TimeReport& report) {
   const auto item = [](const auto& each) { return json_of(each); };
   json["tools"] = json_list(time.tools, item);
   json["slowest"] = json_list(time.slowest, item);
+  if (report.bounds) json["bounds"] = json_of(*report.bounds);
   json["not_timed"] = json_list(time.not_timed, item);
   json["words"] = own_words_json(report.own_words);
   if (!report.called.empty()) json["called"] = called_json(report.called);
@@ -156,6 +207,7 @@ std::string time_text(const TimeReport& report) {
   add_parts(report.time, lines);
   add_tools(report.time, lines);
   add_slow_places(report.time, lines);
+  if (report.bounds) add_bounds(*report.bounds, lines);
   add_not_timed(report.time, lines);
   lines += text_of(report.called);
   if (!report.called.empty()) lines += titled("", "the time of what is called is not in it");

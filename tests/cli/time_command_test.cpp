@@ -57,6 +57,45 @@ TEST_F(TimeCommandLine, WritesJsonWhosePartsSumToTheWhole) {
   EXPECT_TRUE(json.at("not_timed").is_array());
 }
 
+// A zigzag of 1 mm steps that turns by 90 degrees: the machine brakes in each corner.
+std::string zigzag() {
+  std::string text = "G21 G90 G17 G94\nG0 X0 Y0 Z0\nG1 X0.7 Y0.7 F3000\n";
+  for (int i = 2; i <= 60; ++i) {
+    text += "X" + std::to_string(0.7 * i) + " Y" + (i % 2 == 1 ? "0.7" : "0") + "\n";
+  }
+  return text + "G0 X50 Y50\nM2\n";
+}
+
+TEST_F(TimeCommandLine, TellsWhatIsLeftToWin) {
+  folder_.put("zigzag.nc", zigzag());
+  const auto bounds = [&](const std::string& more) {
+    const auto result =
+        expect_exit(folder_.batten("time zigzag.nc --machine mill --bound --json - " + more), 0);
+    return nlohmann::json::parse(result.out).at("bounds");
+  };
+  const auto on_path = bounds("");
+  EXPECT_TRUE(on_path.at("least_within_s").is_null());
+  const auto near = bounds("--tolerance 0.01");
+  const auto far = bounds("--tolerance 0.1");
+  EXPECT_EQ(near.at("time_s"), on_path.at("time_s"));
+  EXPECT_GT(near.at("time_s").get<double>(), near.at("least_on_path_s").get<double>());
+  EXPECT_GT(near.at("least_on_path_s").get<double>(), near.at("least_within_s").get<double>());
+  EXPECT_GT(near.at("least_within_s").get<double>(), far.at("least_within_s").get<double>());
+  ASSERT_EQ(near.at("runs").size(), 1U);
+  EXPECT_EQ(near.at("runs")[0].at("first_line"), 3);
+  EXPECT_EQ(near.at("runs")[0].at("last_line"), 62);
+}
+
+TEST_F(TimeCommandLine, SaysInWordsWhatIsLeftToWin) {
+  folder_.put("zigzag.nc", zigzag());
+  const std::string command = "time zigzag.nc --machine mill --bound --tolerance 0.01mm";
+  const ProcessResult result = expect_exit(folder_.batten(command), 0);
+  for (const char* words : {"to win", "in 1 run", "on a path within 0.01 mm", "lines 3-62:"}) {
+    EXPECT_TRUE(contains(result.out, words)) << words << "\n" << result.out;
+  }
+  expect_exit(folder_.batten("time zigzag.nc --machine mill --bound --tolerance -1"), 1);
+}
+
 TEST_F(TimeCommandLine, SaysWhatItDoesNotKnow) {
   const ProcessResult result = time("--machine mill");
   EXPECT_TRUE(contains(result.out, "start-unknown")) << result.out;
