@@ -180,7 +180,7 @@ class ProgramLister : EventLister {
   }
 
   void list_word(const Block& block, const Word& word, bool moves) {
-    if (word.letter == 'G') return list_g(word, moves);
+    if (word.letter == 'G') return list_g(block, word, moves);
     const auto& before = interpretation_.states[state_index_before()];
     const bool acts = word.letter == 'S' ? before.spindle_speed != word.value
                       // No state carries it to the position where it counts.
@@ -191,7 +191,15 @@ class ProgramLister : EventLister {
     if (acts) add_word(word, moves);
   }
 
-  void list_g(const Word& word, bool moves) {
+  // What such a block sets may be there for the next program: controls differ in what they reset.
+  [[nodiscard]] bool ends_program(const Block& block) const {
+    return std::ranges::any_of(program_.words_of(block), [](const Word& word) {
+      return word.letter == 'M' && word.is_number &&
+             gcode::row_of_m(gcode::code_of(word)).act == gcode::CodeAct::kEnds;
+    });
+  }
+
+  void list_g(const Block& block, const Word& word, bool moves) {
     const gcode::CodeRow& row = gcode::row_of_g(gcode::code_of(word));
     if (row.group == CodeGroup::kMotion) {
       // To nowhere: controls refuse an arc, or run it, and refuse a cut before the first feed.
@@ -203,7 +211,9 @@ class ProgramLister : EventLister {
     Code& set = set_by_word_[static_cast<std::size_t>(row.group)];
     const bool repeats = set == row.code && !row.is(gcode::trait::kActsEachTime);
     set = row.code;
-    if (repeats || row.group == CodeGroup::kPlane || row.group == CodeGroup::kArcDistance) return;
+    // Compared as states, wherever something depends on them.
+    const bool is_state = row.group == CodeGroup::kPlane || row.group == CodeGroup::kArcDistance;
+    if (repeats || (is_state && !ends_program(block))) return;
     add_word(word, moves);
   }
 

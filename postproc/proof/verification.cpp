@@ -385,6 +385,31 @@ void add_long_lines(const ReadProgram& before, const ReadProgram& after,
   }
 }
 
+std::set<std::string_view> texts_in_parentheses(const ReadProgram& read) {
+  std::set<std::string_view> texts;
+  for (const gcode::Comment& comment : read.program->comments) {
+    if (comment.kind != gcode::CommentKind::kParenthesis) continue;
+    texts.insert(read.program->source.text(comment.span));
+  }
+  return texts;
+}
+
+// A violation for each block with a new text in parentheses, where these are no comments.
+void add_foreign_comments(const ReadProgram& before, const ReadProgram& after,
+                          const gcode::Control& target, std::vector<Violation>& violations) {
+  if (target.comments != gcode::CommentStyle::kSemicolon) return;
+  const std::set<std::string_view> old = texts_in_parentheses(before);
+  for (const gcode::Block& block : after.program->blocks) {
+    for (const gcode::Comment& comment : after.program->comments_of(block)) {
+      const std::string_view text = after.program->source.text(comment.span);
+      if (comment.kind != gcode::CommentKind::kParenthesis || old.contains(text)) continue;
+      violations.push_back({ViolationKind::kTarget, "comment-refused", 0, block.line, 0,
+                            fmt::format("{} is no comment on {}, expected one behind a semicolon",
+                                        text, target.name)});
+    }
+  }
+}
+
 constexpr std::size_t kPartBlocks = 8192;
 
 bool is_pointless(const gcode::Word& word) { return word.without_point; }
@@ -474,6 +499,7 @@ Verification verify(const ReadProgram& before, const ReadProgram& after, const P
     add_refused_arcs(before, after, stretch, *promise.target, found.violations);
   }
   add_long_lines(before, after, *promise.target, found.violations);
+  add_foreign_comments(before, after, *promise.target, found.violations);
   return found;
 }
 

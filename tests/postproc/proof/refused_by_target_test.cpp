@@ -15,13 +15,14 @@ namespace {
 
 constexpr const char* kBegin = "G21 G17 G90 G94\nG0 X0 Y0 Z0\nF100\n";
 
-std::vector<Violation> violations_of(const std::string& before, const std::string& after) {
+std::vector<Violation> violations_of(const std::string& before, const std::string& after,
+                                     const char* target = "linuxcnc") {
   const tests::Interpreted old_read(kBegin + before);
   const tests::Interpreted new_read(kBegin + after);
   const ReadProgram a{&old_read.program, &old_read.read};
   const ReadProgram b{&new_read.program, &new_read.read};
   const Promise promise(1.0, geometry::ToleranceKind::kPath, geometry::Side::kBoth,
-                        gcode::find_control("linuxcnc"));
+                        gcode::find_control(target));
   return verify(a, b, promise).violations;
 }
 
@@ -134,6 +135,22 @@ TEST(RefusedLines, AreNewOnesThatAreTooLong) {
     EXPECT_TRUE(violations_of(longer + "G1 X2\n", "G1 X1\nG1 X1.5\nG1 X2\n").empty());
   }
   EXPECT_TRUE(violations_of(line, "G1 X1 ;" + std::string(200, 'a') + "\n").empty());
+}
+
+// Siemens reads M30 (a) as a function with arguments.
+TEST(RefusedComments, AreNewOnesInParenthesesWhereTheseAreNone) {
+  const std::string line = "G1 X1\nM30\n";
+  const std::string other = "G1 X1\nM30 (a)\n";
+  for (const char* target : {"siemens", "klipper"}) {
+    const auto found = violations_of(line, other, target);
+    ASSERT_EQ(found.size(), 1U) << target;
+    EXPECT_EQ(found[0].id, "comment-refused");
+    EXPECT_EQ(found[0].kind, ViolationKind::kTarget);
+    EXPECT_EQ(found[0].new_line, 5U);
+    EXPECT_TRUE(violations_of(other, other, target).empty());
+    EXPECT_TRUE(violations_of(line, "G1 X1\nM30 ; a\n", target).empty());
+  }
+  EXPECT_TRUE(violations_of(line, other, "linuxcnc").empty());
 }
 
 }  // namespace

@@ -294,6 +294,17 @@ TEST(Verify, WantsTheFeedAgainBehindAFeedModeThatIsSaidOnceMore) {
   EXPECT_FALSE(verified(nowhere, replaced(nowhere, "F800\nX20", "X20")).proved());
 }
 
+// A control that resets no planes at the end begins the next program with these.
+TEST(Verify, SeesModesThatAreSetInTheBlockOfTheEnd) {
+  const std::string program = "G21 G90 G17\nG0 X0 Y0 Z0\nG1 X60 F3000\nM30\n";
+  for (const char* mode : {"G18", "G19", "G91", "G90.1"}) {
+    const std::string other = replaced(program, "M30", std::string("M30 ") + mode);
+    EXPECT_FALSE(verified(program, other).proved()) << mode;
+    EXPECT_FALSE(verified(other, program).proved()) << mode;
+    EXPECT_TRUE(verified(other, other).proved()) << mode;
+  }
+}
+
 // LinuxCNC runs the two lines as one, straight to the corner on the other side.
 TEST(Verify, DoesNotTakeALoneReturnForALineEnd) {
   const std::string apart = "G21 G90\nG0 X0 Y0 Z0\nG1 X60 F3000\nY60\nX0\nM2\n";
