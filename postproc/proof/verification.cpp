@@ -385,27 +385,22 @@ void add_long_lines(const ReadProgram& before, const ReadProgram& after,
   }
 }
 
-std::set<std::string_view> texts_in_parentheses(const ReadProgram& read) {
-  std::set<std::string_view> texts;
-  for (const gcode::Comment& comment : read.program->comments) {
-    if (comment.kind != gcode::CommentKind::kParenthesis) continue;
-    texts.insert(read.program->source.text(comment.span));
-  }
-  return texts;
+bool is_in_parentheses(const gcode::Comment& comment) {
+  return comment.kind == gcode::CommentKind::kParenthesis;
 }
 
-// A violation for each block with a new text in parentheses, where these are no comments.
+// A violation for each new text in parentheses where the target has no such comments. A program
+// that has any itself was written for a control that has.
 void add_foreign_comments(const ReadProgram& before, const ReadProgram& after,
                           const gcode::Control& target, std::vector<Violation>& violations) {
   if (target.comments != gcode::CommentStyle::kSemicolon) return;
-  const std::set<std::string_view> old = texts_in_parentheses(before);
+  if (std::ranges::any_of(before.program->comments, is_in_parentheses)) return;
   for (const gcode::Block& block : after.program->blocks) {
     for (const gcode::Comment& comment : after.program->comments_of(block)) {
-      const std::string_view text = after.program->source.text(comment.span);
-      if (comment.kind != gcode::CommentKind::kParenthesis || old.contains(text)) continue;
+      if (!is_in_parentheses(comment)) continue;
       violations.push_back({ViolationKind::kTarget, "comment-refused", 0, block.line, 0,
                             fmt::format("{} is no comment on {}, expected one behind a semicolon",
-                                        text, target.name)});
+                                        after.program->source.text(comment.span), target.name)});
     }
   }
 }

@@ -148,6 +148,7 @@ TEST(RefusedComments, AreNewOnesInParenthesesWhereTheseAreNone) {
     EXPECT_EQ(found[0].kind, ViolationKind::kTarget);
     EXPECT_EQ(found[0].new_line, 5U);
     EXPECT_TRUE(violations_of(other, other, target).empty());
+    EXPECT_TRUE(violations_of("(b)\n" + line, "(c)\n" + line, target).empty());
     EXPECT_TRUE(violations_of(line, "G1 X1\nM30 ; a\n", target).empty());
   }
   EXPECT_TRUE(violations_of(line, other, "linuxcnc").empty());
