@@ -46,8 +46,8 @@ std::vector<Control> linuxcnc_family() {
   // Coordinates turn by G10 L2 R, which is an offset and no mode of the text. A user's own remap of
   // G68.2 or G51 is a known word when it stands in the program.
   control.lacks = mode::kToolCenterPoint + mode::kTiltedPlane + mode::kScaling + mode::kRotation +
-                  mode::kMirror + mode::kPolar + mode::kCylindrical + mode::kControlSmoothing +
-                  mode::kModalMacro;
+                  mode::kMirror + mode::kPolar + mode::kPolarInterpolation + mode::kCylindrical +
+                  mode::kControlSmoothing + mode::kModalMacro;
   return {control};
 }
 

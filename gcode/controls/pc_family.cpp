@@ -13,8 +13,8 @@ Control pc(std::string_view name, std::string_view description, DecimalsByUnit d
   control.description = description;
   control.places = control.arc_ends = control.centers = decimals;
   control.max_line_length = 120;  // unknown; no line of ours needs more
-  // None of them wraps a path around a cylinder or fits its own curves by G5.1 or G131.
-  control.lacks = mode::kCylindrical + mode::kControlSmoothing;
+  // None of them wraps a path around a cylinder or a face, or fits its own curves by G5.1 or G131.
+  control.lacks = mode::kPolarInterpolation + mode::kCylindrical + mode::kControlSmoothing;
   return control;
 }
 

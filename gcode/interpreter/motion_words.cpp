@@ -153,7 +153,7 @@ double to_mm(double value, const ControlState& state) {
 // But for the kind of motion, which the block may say.
 bool is_plain_state(const ModalState& modal) {
   return modal.distance == DistanceMode::kAbsolute && modal.polar == TriState::kOff &&
-         modal.modal_macro == TriState::kOff;
+         modal.polar_interpolation == TriState::kOff && modal.modal_macro == TriState::kOff;
 }
 
 bool is_plain_block(const Block& block, const BlockFlow& flow) {
@@ -230,8 +230,11 @@ std::string_view why_not_followed(const BlockWords& words, const StateEffect& ef
   if (modal.motion == MotionMode::kUnknown || modal.distance == DistanceMode::kUnknown) {
     return reason::kStateUnknown;
   }
-  if (modal.polar != TriState::kOff || modal.modal_macro != TriState::kOff) {
-    return modal.polar == TriState::kOn         ? reason::kPolar
+  const auto is_any = [&](TriState value) {
+    return modal.polar == value || modal.polar_interpolation == value;
+  };
+  if (is_any(TriState::kOn) || is_any(TriState::kUnknown) || modal.modal_macro != TriState::kOff) {
+    return is_any(TriState::kOn)                ? reason::kPolar
            : modal.modal_macro == TriState::kOn ? reason::kModalMacro
                                                 : reason::kStateUnknown;
   }

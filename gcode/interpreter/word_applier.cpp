@@ -136,7 +136,9 @@ class WordApplier {
       case CodeGroup::kMirror:
         return set_frame(row, modal().mirror);
       case CodeGroup::kPolar:
-        return apply_polar(row);
+        return set_frame(row, modal().polar);
+      case CodeGroup::kPolarInterpolation:
+        return set_frame(row, modal().polar_interpolation);
       case CodeGroup::kCylindrical:
         return apply_cylindrical(row);
       case CodeGroup::kSmoothing:
@@ -235,19 +237,6 @@ class WordApplier {
       return forget_named_axes(state_, words_);
     }
     set_frame(row, modal().scaling);
-  }
-
-  // Polar interpolation (G12.1) is ended by G13.1 alone, polar coordinates (G16) by G15 alone. That
-  // about a cylinder, which is never on together with either, stands for the first, too.
-  void apply_polar(const CodeRow& row) {
-    const bool interpolates =
-        row.why == reason::kPolar &&
-        (row.code / 10 == 12 || row.code == 1120 || row.code / 10 == 13 || row.code == 1130);
-    if (!interpolates) return set_frame(row, modal().polar);
-    const bool is_its_own = modal().polar == TriState::kOn && modal().cylindrical == TriState::kOn;
-    if (is_off(row) && !is_its_own && modal().polar != TriState::kOff) return;
-    if (is_on(row) || is_its_own) modal().cylindrical = row.value.as<TriState>();
-    set_frame(row, modal().polar);
   }
 
   void apply_rotation(const CodeRow& row) {

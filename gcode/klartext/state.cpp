@@ -290,9 +290,9 @@ std::string_view apply_path(KlartextKind kind, std::string_view content, std::st
 
 // Increments and polar coordinates are said in each block, cylinders by cycles with an end of their
 // own; the control rounds by itself (M112, M124) within what is its own in both programs.
-constexpr ModeSet kNoModeOfKlartext = mode::kDistance + mode::kPath + mode::kPolar +
-                                      mode::kCylindrical + mode::kControlSmoothing +
-                                      mode::kSurfaceSpeed + mode::kLatheDiameter;
+constexpr ModeSet kNoModeOfKlartext =
+    mode::kDistance + mode::kPath + mode::kPolar + mode::kPolarInterpolation + mode::kCylindrical +
+    mode::kControlSmoothing + mode::kSurfaceSpeed + mode::kLatheDiameter;
 
 void start_klartext(ControlState& state) { state.modal.arc_distance = DistanceMode::kAbsolute; }
 

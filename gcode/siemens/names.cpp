@@ -72,7 +72,7 @@ constexpr NameRow kNames[] = {
     {" TRAORI ", reason::kToolCenterPoint, kLost, &Modal::tool_center_point},
     {" TRAFOOF ", reason::kToolCenterPoint, kLost, &Modal::tool_center_point, kOff, kMove,
      kEndsTransformation},
-    {" TRANSMIT ", reason::kPolar, kLost, &Modal::polar},
+    {" TRANSMIT ", reason::kPolar, kLost, &Modal::polar_interpolation},
     {" TRACYL ", reason::kCylindrical, kLost, &Modal::cylindrical},
     {" CYCLE800 ", reason::kTiltedPlane, kLost, &Modal::tilted_plane, kOn, kMove, kTilts},
     {" TOROT TOFRAME PAROT ", reason::kTiltedPlane, kLost, &Modal::tilted_plane},
@@ -221,6 +221,7 @@ class NameApplier {
     switch (row.act) {
       case NameAct::kEndsTransformation:
         modal().polar = TriState::kOff;
+        modal().polar_interpolation = TriState::kOff;
         modal().cylindrical = TriState::kOff;
         return;
       case NameAct::kTilts:

@@ -29,14 +29,14 @@ void for_each_mode(ModalState& a, const ModalState& b, Visit visit) {
 // kModalSwitches where it is a switch, or stands beside feeds and speeds in `either`.
 constexpr std::size_t switches_of(const ModalState& state) {
   const auto& [motion, units, plane, distance, arc_distance, feed_mode, path, cutter, tool_center,
-               tilted, scaling, rotation, mirror, polar, cylindrical, smoothing, macro, surface,
-               diameter, laser, feed, without_point, spindle] = state;
+               tilted, scaling, rotation, mirror, polar, interpolation, cylindrical, smoothing,
+               macro, surface, diameter, laser, feed, without_point, spindle] = state;
   const auto count = [](const auto&... items) {
     return (0 + ... + (std::is_same_v<decltype(items), const TriState&> ? 1 : 0));
   };
   return count(motion, units, plane, distance, arc_distance, feed_mode, path, cutter, tool_center,
-               tilted, scaling, rotation, mirror, polar, cylindrical, smoothing, macro, surface,
-               diameter, laser, feed, without_point, spindle);
+               tilted, scaling, rotation, mirror, polar, interpolation, cylindrical, smoothing,
+               macro, surface, diameter, laser, feed, without_point, spindle);
 }
 static_assert(switches_of({}) == kModalSwitches.size());
 

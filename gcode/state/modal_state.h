@@ -34,7 +34,8 @@ struct ModalState {
   TriState scaling = TriState::kOff;                 // G51, G50
   TriState rotation = TriState::kOff;                // G68, G69
   TriState mirror = TriState::kOff;                  // G51.1, M21 ..
-  TriState polar = TriState::kOff;                   // G16, G12.1, G112
+  TriState polar = TriState::kOff;                   // G16, G15
+  TriState polar_interpolation = TriState::kOff;     // G12.1, G112; G13.1
   TriState cylindrical = TriState::kOff;             // G07.1, G107
   TriState control_smoothing = TriState::kOff;       // G05.1 Q2: the control refits points
   TriState modal_macro = TriState::kOff;             // G66
@@ -64,6 +65,7 @@ inline constexpr std::array kModalSwitches = {
     ModalSwitch{&ModalState::rotation, "rotation"},
     ModalSwitch{&ModalState::mirror, "mirroring"},
     ModalSwitch{&ModalState::polar, "polar coordinates"},
+    ModalSwitch{&ModalState::polar_interpolation, "polar interpolation"},
     ModalSwitch{&ModalState::cylindrical, "cylindrical coordinates"},
     // What a control fits through the points by itself is its own deviation, in both programs.
     ModalSwitch{&ModalState::control_smoothing, "smoothing by the control", false},
@@ -98,6 +100,7 @@ inline constexpr ModeSet kScaling = of(&ModalState::scaling);
 inline constexpr ModeSet kRotation = of(&ModalState::rotation);
 inline constexpr ModeSet kMirror = of(&ModalState::mirror);
 inline constexpr ModeSet kPolar = of(&ModalState::polar);
+inline constexpr ModeSet kPolarInterpolation = of(&ModalState::polar_interpolation);
 inline constexpr ModeSet kCylindrical = of(&ModalState::cylindrical);
 inline constexpr ModeSet kControlSmoothing = of(&ModalState::control_smoothing);
 inline constexpr ModeSet kModalMacro = of(&ModalState::modal_macro);

@@ -33,6 +33,7 @@ constexpr std::array kModeWords = {
     ModeWords{kSwitch<&Modal::rotation>, "rotation", "G69", "TRANS", "CYCL DEF 10.1 ROT+0"},
     ModeWords{kSwitch<&Modal::mirror>, "mirroring", "G50.1", "TRANS", "CYCL DEF 8.1"},
     ModeWords{kSwitch<&Modal::polar>, "polar coordinates", "G15", "TRAFOOF", ""},
+    ModeWords{kSwitch<&Modal::polar_interpolation>, "polar interpolation", "G13.1", "TRAFOOF", ""},
     ModeWords{kSwitch<&Modal::cylindrical>, "cylindrical coordinates", "G7.1 C0", "TRAFOOF", ""},
     ModeWords{kSwitch<&Modal::control_smoothing>, "smoothing by the control", "G5.1 Q0", "COMPOF",
               "M113", "--allow control-smoothing"},

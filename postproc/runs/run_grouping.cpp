@@ -46,6 +46,7 @@ constexpr UnsafeSwitch kUnsafeSwitches[] = {
     {&ModalState::tool_center_point, reason::kToolCenterPoint},
     {&ModalState::tilted_plane, reason::kTiltedPlane},
     {&ModalState::polar, reason::kPolar},
+    {&ModalState::polar_interpolation, reason::kPolar},
     {&ModalState::cylindrical, reason::kCylindrical},
     {&ModalState::scaling, reason::kScaling},
     {&ModalState::rotation, reason::kRotation},

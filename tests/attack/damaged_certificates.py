@@ -15,6 +15,8 @@ all. Damage that is harmful by how it was made has to be rejected:
     the path is left by more than 1.5 tolerances;
   - a certificate of a larger tolerance.
 
+A program with expressions of constants is certified, and refused with a parameter set in a run.
+
 Other damage may be harmless and is counted apart; where it is accepted, the readers of the campaign
 (oracle.py) have to find it harmless. Prints a line for each kind, and what was accepted though it is
 harmful; exits with 1 when there was any."""
@@ -361,6 +363,38 @@ class Campaign:
         return done
 
 
+def constants(batten, folder):
+    """Findings about a program with expressions of parameters: it has to be certified while each is
+    set once, before, and none among the rewritten lines."""
+    wave = [f"X[#<s>*{0.2 * i:.3f}] Y[#<s>*[{math.sin(0.2 * i):.4f}/2]]" for i in range(1, 101)]
+    old, new, proof = (folder / name for name in ("old.ngc", "new.ngc", "new.cert"))
+
+    def verdict(setting, planted):
+        lines = ["G21 G17 G90 G94 G40", setting, "G0 X0 Y0 Z5", "G1 Z-1 F300", "G1 " + wave[0] + " F2000",
+                 *wave[1:], "G0 Z5", "G1 X[#<s>*3] F300", "M2"]
+        old.write_text("\n".join(lines) + "\n")
+        subprocess.run([batten, "smooth", old, "-o", new, "--certificate", proof, "--force", "--quiet", "--target", "linuxcnc",
+                        "--tolerance", str(TOLERANCE), "--output", "lines", "--prefer", "size"], check=True, capture_output=True)
+        text, certificate = new.read_text().split("\n"), proof.read_text()
+        run = re.search(r"run (\d+) (\d+) (\d+) (\d+)", certificate)
+        if run is None:
+            return "kept"
+        if planted:
+            text.insert(int(run[3]) + 5, planted)
+            certificate = certificate.replace(run[0], f"run {run[1]} {run[2]} {run[3]} {int(run[4]) + 1}")
+        new.write_text("\n".join(text))
+        proof.write_text(certificate)
+        with contextlib.redirect_stdout(io.StringIO()):
+            code = check_certificate.main([str(old), str(new), str(proof), "--control", "linuxcnc",
+                                           "--tolerance", str(TOLERANCE)])
+        return "refused" if code else "certified"
+
+    expected = {("#<s> = 1.5", ""): "certified", ("#<s> = 1.5", "#<s> = 2.0"): "refused",
+                ("#<s> = 1.5", "#5 = 2.0"): "refused", ("#<s> = 1.5", "#<other> = 2.0"): "refused"}
+    found = {case: verdict(*case) for case in expected}
+    return [f"constants: {case}: {found[case]}" for case in expected if found[case] != expected[case]]
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("batten", type=pathlib.Path)
@@ -369,6 +403,7 @@ def main():
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         campaign = Campaign(options.batten.resolve(), pathlib.Path(folder))
+        campaign.wrong += constants(options.batten.resolve(), pathlib.Path(folder))
         done = campaign.run(options.count, options.seed)
     for kind, (harmful, accepted, others, others_accepted) in sorted(campaign.counts.items()):
         print(f"{kind}: {harmful} harmful, {accepted} of them accepted; {others} others, {others_accepted} accepted")

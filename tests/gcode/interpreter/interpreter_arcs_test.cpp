@@ -143,7 +143,7 @@ TEST(InterpreterArcs, TakesCentresForPlacesUnderG90WhereTheControlDoes) {
   EXPECT_EQ(centre_of("G91\nG3 X-20 I-10 F9", true), Eigen::Vector2d(0, 0));
   EXPECT_EQ(centre_of("G91\nG90 G3 X-10 I0 J0 F9", true), Eigen::Vector2d(0, 0));
   const std::string modes =
-      "G21 G17 G94 G64 G40\nG49 G69\nG50\nG50.1\nG15\nG7.1 C0\nG5.1 Q0\nG67\nG97\nG8\n";
+      "G21 G17 G94 G64 G40\nG49 G69\nG50\nG50.1\nG15\nG13.1\nG7.1 C0\nG5.1 Q0\nG67\nG97\nG8\n";
   const std::string cut = "G0 X10 Y0 Z0\nG3 X-10 I0 J0 F9";
   EXPECT_EQ(centre_of("G777\nG90\n" + modes + cut, true), Eigen::Vector2d(0, 0));
   EXPECT_FALSE(centre_of("G777\n" + modes + cut, true).has_value());

@@ -47,7 +47,8 @@ TEST(LostModes, AreToldWithTheWordsThatWereNotSaidAgain) {
   EXPECT_NE(lost_modes_told(text).find(
                 "not set again before the last of them: units (G20 or G21), centres of arcs "
                 "(G91.1), path mode (G64), tilted plane (G69), scaling (G50), rotation (G69), "
-                "mirroring (G50.1), polar coordinates (G15), cylindrical coordinates (G7.1 C0), "
+                "mirroring (G50.1), polar coordinates (G15), polar interpolation (G13.1), "
+                "cylindrical coordinates (G7.1 C0), "
                 "smoothing by the control (G5.1 Q0, or --allow control-smoothing), modal macro "
                 "(G67), constant surface speed "
                 "(G97), diameter mode (G8). Set these after it"),
@@ -74,20 +75,20 @@ const WordsRow kWordsRows[] = {
      {"G21", "G17", "G90", "G91.1", "G94", "G64", "G40", "G49", "G69", "G50", "G50.1", "G15", "G67",
       "G97", "G8"}},
     {{"haas"},
-     {"G21", "G17", "G90", "G94", "G64", "G40", "G49", "G69", "G50", "G50.1", "G15", "G7.1 C0",
-      "G67", "G97"}},
+     {"G21", "G17", "G90", "G94", "G64", "G40", "G49", "G69", "G50", "G50.1", "G15", "G13.1",
+      "G7.1 C0", "G67", "G97"}},
     {{"fanuc", "syntec", "mitsubishi", "mazak", "brother", "hurco", "fagor", "num", "philips"},
-     {"G21", "G17", "G90", "G94", "G64", "G40", "G49", "G69", "G50", "G50.1", "G15", "G7.1 C0",
-      "G5.1 Q0", "G67", "G97"}},
+     {"G21", "G17", "G90", "G94", "G64", "G40", "G49", "G69", "G50", "G50.1", "G15", "G13.1",
+      "G7.1 C0", "G5.1 Q0", "G67", "G97"}},
     {{"okuma"},
-     {"G21", "G17", "G90", "G94", "G64", "G40", "G49", "G69", "G50", "G50.1", "G15", "G7.1 C0",
-      "G130", "G67", "G97"}},
+     {"G21", "G17", "G90", "G94", "G64", "G40", "G49", "G69", "G50", "G50.1", "G15", "G13.1",
+      "G7.1 C0", "G130", "G67", "G97"}},
     {{"codesys"},
-     {"G17", "G90", "G91.1", "G94", "G64", "G40", "G49", "G69", "G50", "G50.1", "G15", "G7.1 C0",
-      "G5.1 Q0", "G67", "G97", "G8"}},
+     {"G17", "G90", "G91.1", "G94", "G64", "G40", "G49", "G69", "G50", "G50.1", "G15", "G13.1",
+      "G7.1 C0", "G5.1 Q0", "G67", "G97", "G8"}},
     {{"beckhoff"},
      {"G21", "G17", "G90", "G91.1", "G94", "G64", "G40", "G49", "G69", "G50", "G50.1", "G15",
-      "G7.1 C0", "G5.1 Q0", "G67", "G97", "G8"}}};
+      "G13.1", "G7.1 C0", "G5.1 Q0", "G67", "G97", "G8"}}};
 
 bool is_known_behind(const Control& control, const std::string& block,
                      const std::vector<std::string>& words) {

@@ -178,11 +178,12 @@ TEST(SiemensEffect, IsForgottenAsFarAsItReaches) {
     const bool known = is_known(state);
     const std::int32_t motion = read.blocks[3].motion;
     const bool placed = motion >= 0 && read.motions[static_cast<std::size_t>(motion)].start_known;
-    const bool plain = state.tool_center_point == TriState::kOff &&
-                       state.tilted_plane == TriState::kOff && state.scaling == TriState::kOff &&
-                       state.rotation == TriState::kOff && state.mirror == TriState::kOff &&
-                       state.polar == TriState::kOff && state.cylindrical == TriState::kOff &&
-                       state.control_smoothing == TriState::kOff;
+    const bool plain =
+        state.tool_center_point == TriState::kOff && state.tilted_plane == TriState::kOff &&
+        state.scaling == TriState::kOff && state.rotation == TriState::kOff &&
+        state.mirror == TriState::kOff && state.polar == TriState::kOff &&
+        state.polar_interpolation == TriState::kOff && state.cylindrical == TriState::kOff &&
+        state.control_smoothing == TriState::kOff;
     const std::string_view after = !known   ? "nothing"
                                    : !plain ? "bent"
                                    : placed ? "place"

@@ -19,14 +19,14 @@ bool go_on(double) { return true; }
 // A program with one run, smoothed and not yet proved.
 class SmoothedPart {
  public:
-  explicit SmoothedPart(const std::string& text, Form form = Form::kAuto)
+  explicit SmoothedPart(const std::string& text, Form form = Form::kAuto, std::size_t runs = 1)
       : read_(text), part_{read_.program, read_.meaning}, runs_(find_runs(part_, options_)) {
     options_.output = form;
     EXPECT_TRUE(smooth_runs(part_, options_, go_on, runs_));
-    EXPECT_EQ(runs_.works.size(), 1U);
+    EXPECT_EQ(runs_.works.size(), runs);
   }
 
-  RunState& work() { return runs_.works.at(0); }
+  RunState& work(std::size_t i = 0) { return runs_.works.at(i); }
   const PartRuns& runs() const { return runs_; }
 
   void make_all() {
@@ -34,9 +34,10 @@ class SmoothedPart {
   }
 
   // Puts a wrong way behind the first block of so many candidates of those that may be chosen.
-  void spoil(std::size_t candidates) {
+  void spoil(std::size_t candidates, std::size_t of = 0) {
+    RunState& spoiled = work(of);
     for (std::size_t i = 0; i < candidates; ++i) {
-      std::string& text = work().smoothed.candidates[work().selection.order.at(i)].text.text;
+      std::string& text = spoiled.smoothed.candidates[spoiled.selection.order.at(i)].text.text;
       text.insert(text.find('\n') + 1, kElsewhere);
     }
   }
@@ -96,6 +97,38 @@ TEST(PartProof, CutsALongRunOfWhichNothingIsLeft) {
   EXPECT_GE(part.runs().works.size(), 3U);
   for (const RunState& piece : part.runs().works) EXPECT_NE(piece.chosen(), nullptr);
   EXPECT_EQ(done.text.find(kElsewhere), std::string::npos);
+}
+
+// Another candidate of a long run would leave the tolerance elsewhere.
+TEST(PartProof, CutsAtOnceWhatIsLongEnoughAndNothingElse) {
+  for (const int lines : {1500, 700}) {
+    SCOPED_TRACE(lines);
+    SmoothedPart part(wave_program({.lines = lines, .height = 0.5, .length = 6}));
+    part.make_all();
+    ASSERT_GE(part.work().selection.order.size(), 2U);
+    part.spoil(1);
+    EXPECT_TRUE(part.proved().proved);
+    EXPECT_EQ(part.runs().cut_runs.size(), lines == 1500 ? 1U : 0U);
+  }
+}
+
+TEST(PartProof, KnowsThePiecesOfEachRunThatIsCut) {
+  const Wave wave{.lines = 1500, .height = 4, .length = 40};
+  const std::string again = "G0 Z5\nG0 X0 Y0\nG1 Z-1 F300\n" + joined(wave_lines(wave), "\n");
+  SmoothedPart part(head("G21") + joined(wave_lines(wave), "\n") + again + tail(), Form::kAuto, 2);
+  part.spoil(part.work(1).selection.order.size(), 1);
+  ASSERT_TRUE(part.proved().proved);
+  part.spoil(part.work().selection.order.size());
+  ASSERT_TRUE(part.proved().proved);
+  ASSERT_EQ(part.runs().cut_runs.size(), 2U);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const CutRun& cut = part.runs().cut_runs[i];
+    const RunState& first = part.runs().works.at(cut.first_work);
+    EXPECT_EQ(first.cut_run, i);
+    EXPECT_EQ(first.first, 0U);
+    EXPECT_EQ(part.runs().works.at(cut.first_work + cut.pieces - 1).last,
+              cut.run.points.size() - 1);
+  }
 }
 
 TEST(PartProof, KeepsAPieceThatIsWrongAndCutsNoOther) {

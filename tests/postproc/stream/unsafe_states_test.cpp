@@ -53,7 +53,8 @@ DistancesAndFeeds_Thread|siemens|G33 Z-2 K1.5|threading
 DistancesAndFeeds_Tapping|siemens|G331 Z-2 K1.5|threading
 DistancesAndFeeds_ThreadCycle|fanuc|G76 P10060 Q100 R0.1|threading
 Coordinates_PolarInterpolation|fanuc|G12.1|polar-coordinates|=|G13.1
-Coordinates_PolarInterpolationBehindG15|fanuc|G12.1\nG15|polar-coordinates|cylindrical
+Coordinates_PolarInterpolationIsNotEndedByG15|fanuc|G12.1\nG15|polar-coordinates|=|G13.1
+Coordinates_PolarCoordinatesAreNotEndedByG131|fanuc|G16\nG13.1|polar-coordinates|=|G15
 Coordinates_PolarCoordinates|fanuc|G16|polar-coordinates|=|G15
 Coordinates_Cylinder|fanuc|G07.1 C20.|cylindrical|=|G07.1 C0
 Coordinates_PolarInterpolation|siemens|TRANSMIT|polar-coordinates|=|TRAFOOF
