@@ -65,10 +65,24 @@ std::optional<OwnEffect> own_functions(std::string_view content, const ControlSt
   return all;
 }
 
+void set_center(TriState ControlState::*way, TriState value, ControlState& state) {
+  state.*way = value;
+  const auto is_either = [&state](TriState held) {
+    return state.center_by_word == held || state.center_by_function == held;
+  };
+  state.modal.tool_center_point = is_either(TriState::kOn)        ? TriState::kOn
+                                  : is_either(TriState::kUnknown) ? TriState::kUnknown
+                                                                  : TriState::kOff;
+}
+
 void apply_function(double code, ControlState& state) {
   ModalState& modal = state.modal;
-  if (code == 128 || code == 114 || code == 144) modal.tool_center_point = TriState::kOn;
-  if (code == 129 || code == 115 || code == 145) modal.tool_center_point = TriState::kOff;
+  if (code == 128 || code == 114 || code == 144) {
+    set_center(&ControlState::center_by_word, TriState::kOn, state);
+  }
+  if (code == 129 || code == 115 || code == 145) {
+    set_center(&ControlState::center_by_word, TriState::kOff, state);
+  }
   if (code == 136 || code == 137) {
     modal.feed_mode = code == 136 ? FeedMode::kPerRevolution : FeedMode::kPerMinute;
     modal.feed.reset();
@@ -253,7 +267,7 @@ std::string_view apply_tcpm(std::string_view content, ControlState& state) {
     forget_klartext(state);
     return reason::kForeignWords;
   }
-  state.modal.tool_center_point = resets ? TriState::kOff : TriState::kOn;
+  set_center(&ControlState::center_by_function, resets ? TriState::kOff : TriState::kOn, state);
   forget_position(state);
   return reason::kToolCenterPoint;
 }

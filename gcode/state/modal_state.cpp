@@ -92,6 +92,8 @@ void forget_everything(ControlState& state) {
   unknown.lacks = state.lacks;
   unknown.centers_follow_distance = state.centers_follow_distance;
   unknown.own_words = state.own_words;
+  unknown.center_by_word = TriState::kUnknown;
+  unknown.center_by_function = TriState::kUnknown;
   state = unknown;
 }
 
@@ -124,6 +126,8 @@ ControlState either(const ControlState& a, const ControlState& b) {
   if (a.other_motion != b.other_motion) both.other_motion = {};
   if (a.work_offset != b.work_offset) both.work_offset = 0;
   both.scaled_by_axis = a.scaled_by_axis || b.scaled_by_axis;
+  if (a.center_by_word != b.center_by_word) both.center_by_word = TriState::kUnknown;
+  if (a.center_by_function != b.center_by_function) both.center_by_function = TriState::kUnknown;
   both.set_by_word = a.set_by_word & b.set_by_word;
   return both;
 }

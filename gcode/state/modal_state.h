@@ -29,7 +29,7 @@ struct ModalState {
   FeedMode feed_mode = FeedMode::kPerMinute;
   PathMode path = PathMode::kBlending;
   TriState cutter_compensation = TriState::kOff;     // G41, G42 (any form)
-  TriState tool_center_point = TriState::kOff;       // G43.4, G43.5, TRAORI, M128
+  TriState tool_center_point = TriState::kOff;       // G43.4, G43.5, TRAORI, M128, FUNCTION TCPM
   TriState tilted_plane = TriState::kOff;            // G68.2, CYCLE800, PLANE
   TriState scaling = TriState::kOff;                 // G51, G50
   TriState rotation = TriState::kOff;                // G68, G69
@@ -142,7 +142,11 @@ struct ControlState {
   // the control at power-on is no repetition: it must stay.
   std::uint32_t set_by_word = 0;
   static_assert(kCodeGroups <= 32);
-  bool scaled_by_axis = false;           // Klartext: cycle 26 may hold a factor for an axis
+  bool scaled_by_axis = false;  // Klartext: cycle 26 may hold a factor for an axis
+  // Klartext has two ways to hold the tool's centre, each with an end of its own: M128, which M129
+  // ends, and FUNCTION TCPM, which FUNCTION RESET TCPM ends. ModalState tells what both come to.
+  TriState center_by_word = TriState::kOff;
+  TriState center_by_function = TriState::kOff;
   bool calls_keep_modes = false;         // ReadOptions
   ModeSet lacks = 0;                     // ReadOptions
   bool centers_follow_distance = false;  // ReadOptions

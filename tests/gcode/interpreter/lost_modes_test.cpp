@@ -47,7 +47,7 @@ TEST(LostModes, AreToldWithTheWordsThatWereNotSaidAgain) {
   EXPECT_NE(lost_modes_told(text).find(
                 "not set again before the last of them: units (G20 or G21), centres of arcs "
                 "(G91.1), path mode (G64), tilted plane (G69), scaling (G50), rotation (G69), "
-                "mirroring (G50.1), polar coordinates (G15), polar interpolation (G13.1), "
+                "mirroring (G50.1), polar coordinates (G15), polar interpolation (G13.1 or G113), "
                 "cylindrical coordinates (G7.1 C0), "
                 "smoothing by the control (G5.1 Q0, or --allow control-smoothing), modal macro "
                 "(G67), constant surface speed "

@@ -27,6 +27,8 @@ KinematicFrames_ToolCentre|siemens|TRAORI|tool-center-point|=|TRAFOOF
 KinematicFrames_Tilted|siemens|CYCLE800(1,"TC1",0,57,0,0,0,0,30,0,0,0,0,-1)|tilted-plane|=|CYCLE800()
 KinematicFrames_TiltedByTool|siemens|TOROT|tilted-plane|=|TOROTOF
 KinematicFrames_ToolCentre|heidenhain|M128|misc-function|tool-center-point|M129
+KinematicFrames_ToolCentreIsNotEndedByReset|heidenhain|M128\nFUNCTION RESET TCPM|misc-function|tool-center-point|M129
+KinematicFrames_FunctionIsNotEndedByM129|heidenhain|FUNCTION TCPM F TCP AXIS POS\nM129|tool-center-point|=|FUNCTION RESET TCPM
 KinematicFrames_Tilted|heidenhain|PLANE SPATIAL SPA+0 SPB+30 SPC+0 STAY|tilted-plane|=|PLANE RESET STAY
 Axes_Rotary|fanuc|G1 A30.|other-axis
 Axes_RotaryBesideX|fanuc|G1 X31. C30.|other-axis
