@@ -65,23 +65,23 @@ std::optional<OwnEffect> own_functions(std::string_view content, const ControlSt
   return all;
 }
 
-void set_center(TriState ControlState::*way, TriState value, ControlState& state) {
-  state.*way = value;
-  const auto is_either = [&state](TriState held) {
-    return state.center_by_word == held || state.center_by_function == held;
-  };
-  state.modal.tool_center_point = is_either(TriState::kOn)        ? TriState::kOn
-                                  : is_either(TriState::kUnknown) ? TriState::kUnknown
-                                                                  : TriState::kOff;
+void hold_center(CenterHold way, TriState value, ControlState& state) {
+  state.klartext.center_holds[static_cast<std::size_t>(way)] = value;
+  state.modal.tool_center_point = state.klartext.holds_center();
 }
+
+struct CenterFunctions {
+  double begin, end;  // M codes
+  CenterHold way;
+};
+constexpr CenterFunctions kCenterFunctions[] = {
+    {128, 129, CenterHold::kM128}, {114, 115, CenterHold::kM114}, {144, 145, CenterHold::kM144}};
 
 void apply_function(double code, ControlState& state) {
   ModalState& modal = state.modal;
-  if (code == 128 || code == 114 || code == 144) {
-    set_center(&ControlState::center_by_word, TriState::kOn, state);
-  }
-  if (code == 129 || code == 115 || code == 145) {
-    set_center(&ControlState::center_by_word, TriState::kOff, state);
+  for (const CenterFunctions& row : kCenterFunctions) {
+    if (code == row.begin) hold_center(row.way, TriState::kOn, state);
+    if (code == row.end) hold_center(row.way, TriState::kOff, state);
   }
   if (code == 136 || code == 137) {
     modal.feed_mode = code == 136 ? FeedMode::kPerRevolution : FeedMode::kPerMinute;
@@ -167,7 +167,7 @@ class CycleEffect {
   std::string_view apply_scaling() {
     const std::string_view why = set_frame(
         state_.modal.scaling, says("SCL", 1) ? TriState::kOff : TriState::kOn, reason::kScaling);
-    if (state_.scaled_by_axis) state_.modal.scaling = TriState::kUnknown;
+    if (state_.klartext.scaled_by_axis) state_.modal.scaling = TriState::kUnknown;
     return why;
   }
 
@@ -183,7 +183,7 @@ class CycleEffect {
         is_one[static_cast<std::size_t>(axis - 'X')] = true;
     }
     const bool ends = std::ranges::all_of(is_one, [](bool one) { return one; });
-    if (minor_ == 1) state_.scaled_by_axis = !ends;
+    if (minor_ == 1) state_.klartext.scaled_by_axis = !ends;
     state_.modal.scaling = TriState::kUnknown;
     return reason::kScaling;
   }
@@ -267,7 +267,7 @@ std::string_view apply_tcpm(std::string_view content, ControlState& state) {
     forget_klartext(state);
     return reason::kForeignWords;
   }
-  set_center(&ControlState::center_by_function, resets ? TriState::kOff : TriState::kOn, state);
+  hold_center(CenterHold::kFunction, resets ? TriState::kOff : TriState::kOn, state);
   forget_position(state);
   return reason::kToolCenterPoint;
 }
@@ -316,7 +316,7 @@ void forget_klartext(ControlState& state) {
   forget_everything(state);
   state.modal.units = units;
   start_klartext(state);
-  state.scaled_by_axis = true;
+  state.klartext.scaled_by_axis = true;
 }
 
 std::string_view klartext_statement_text(const Program& program, std::uint32_t first) {

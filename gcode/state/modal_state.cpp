@@ -83,6 +83,14 @@ void forget_axis(ControlState& state, std::size_t axis) {
   state.position.mm[static_cast<Eigen::Index>(axis)] = 0;
 }
 
+TriState KlartextState::holds_center() const {
+  const auto any = [this](TriState held) {
+    return std::find(center_holds.begin(), center_holds.end(), held) != center_holds.end();
+  };
+  if (any(TriState::kOn)) return TriState::kOn;
+  return any(TriState::kUnknown) ? TriState::kUnknown : TriState::kOff;
+}
+
 void forget_position(ControlState& state) { state.position = Position{}; }
 
 void forget_everything(ControlState& state) {
@@ -92,8 +100,7 @@ void forget_everything(ControlState& state) {
   unknown.lacks = state.lacks;
   unknown.centers_follow_distance = state.centers_follow_distance;
   unknown.own_words = state.own_words;
-  unknown.center_by_word = TriState::kUnknown;
-  unknown.center_by_function = TriState::kUnknown;
+  unknown.klartext.center_holds.fill(TriState::kUnknown);
   state = unknown;
 }
 
@@ -125,9 +132,11 @@ ControlState either(const ControlState& a, const ControlState& b) {
   if (a.modal.units != b.modal.units) forget_position(both);
   if (a.other_motion != b.other_motion) both.other_motion = {};
   if (a.work_offset != b.work_offset) both.work_offset = 0;
-  both.scaled_by_axis = a.scaled_by_axis || b.scaled_by_axis;
-  if (a.center_by_word != b.center_by_word) both.center_by_word = TriState::kUnknown;
-  if (a.center_by_function != b.center_by_function) both.center_by_function = TriState::kUnknown;
+  both.klartext.scaled_by_axis = a.klartext.scaled_by_axis || b.klartext.scaled_by_axis;
+  for (std::size_t i = 0; i < kCenterHolds; ++i) {
+    TriState& hold = both.klartext.center_holds[i];
+    if (hold != b.klartext.center_holds[i]) hold = TriState::kUnknown;
+  }
   both.set_by_word = a.set_by_word & b.set_by_word;
   return both;
 }

@@ -131,6 +131,21 @@ struct Position {
   bool operator==(const Position&) const = default;
 };
 
+// The ways in which Klartext holds the tool's centre while rotary axes turn, each with an end of
+// its own: M128 (M129), M114 (M115), M144 (M145), FUNCTION TCPM (FUNCTION RESET TCPM).
+enum class CenterHold : std::uint8_t { kM128, kM114, kM144, kFunction };
+inline constexpr std::size_t kCenterHolds = 4;
+
+// What ModalState tells of Klartext in one item, though several words set it.
+struct KlartextState {
+  bool scaled_by_axis = false;                           // cycle 26 may hold a factor for an axis
+  std::array<TriState, kCenterHolds> center_holds = {};  // by CenterHold
+
+  // ModalState::tool_center_point: what all of them come to.
+  [[nodiscard]] TriState holds_center() const;
+  bool operator==(const KlartextState&) const = default;
+};
+
 // All that the interpreter knows about the control between two blocks.
 struct ControlState {
   ModalState modal;
@@ -142,11 +157,7 @@ struct ControlState {
   // the control at power-on is no repetition: it must stay.
   std::uint32_t set_by_word = 0;
   static_assert(kCodeGroups <= 32);
-  bool scaled_by_axis = false;  // Klartext: cycle 26 may hold a factor for an axis
-  // Klartext has two ways to hold the tool's centre, each with an end of its own: M128, which M129
-  // ends, and FUNCTION TCPM, which FUNCTION RESET TCPM ends. ModalState tells what both come to.
-  TriState center_by_word = TriState::kOff;
-  TriState center_by_function = TriState::kOff;
+  KlartextState klartext;
   bool calls_keep_modes = false;         // ReadOptions
   ModeSet lacks = 0;                     // ReadOptions
   bool centers_follow_distance = false;  // ReadOptions

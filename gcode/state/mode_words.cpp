@@ -26,7 +26,7 @@ constexpr std::array kModeWords = {
     ModeWords{&is_unknown<&Modal::path, PathMode::kUnknown>, "path mode", "G64", "G64", ""},
     ModeWords{kSwitch<&Modal::cutter_compensation>, "cutter compensation", "G40", "G40", "R0"},
     ModeWords{kSwitch<&Modal::tool_center_point>, "tool centre point control", "G49", "TRAFOOF",
-              "M129 and FUNCTION RESET TCPM"},
+              "M129, M115, M145 and FUNCTION RESET TCPM"},
     ModeWords{kSwitch<&Modal::tilted_plane>, "tilted plane", "G69", "CYCLE800()", "PLANE RESET"},
     ModeWords{kSwitch<&Modal::scaling>, "scaling", "G50", "TRANS",
               "CYCL DEF 26.1 X1 Y1 Z1, then CYCL DEF 11.1 SCL 1"},

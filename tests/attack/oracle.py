@@ -4,6 +4,7 @@ Both traces (readers.py, or LinuxCNC's own interpreter) must have the same event
 between two events the cuts at each feed and the rapids follow each other alike, and each pair of paths
 can be travelled together within the tolerance (paths.together)."""
 
+import decimal
 import itertools
 import math
 import os
@@ -109,11 +110,40 @@ class OldProgram:
 # --- LinuxCNC's interpreter ----------------------------------------------------------------------
 
 
+LENGTHS = "XYZUVWIJKRFQ"
+# Those of which all words of LENGTHS are lengths, and P is none.
+INCHES_IN = {"G0", "G1", "G2", "G3", "G4", "G17", "G18", "G19", "G20", "G28", "G30", "G40", "G43", "G49", "G53", "G54", "G55",
+             "G61", "G64", "G80", "G81", "G82", "G83", "G90", "G90.1", "G91", "G91.1", "G92", "G92.1", "G94", "G98", "G99"}
+
+
+def in_millimetres(text):
+    """The same program with G21, its lengths exact; None: not told by words alone. rs274 prints four
+    digits of an inch, and an arc that is shorter than they tell looks like a full circle."""
+    lines = []
+    for line in text.split("\n"):
+        if set(line) & set("[#<%") or re.match(r"\s*[oO]", line):
+            return None
+        code = re.sub(r"\([^)]*\)|;.*", "", line).upper().replace(" ", "")
+        words = [(letter, decimal.Decimal(number)) for letter, number in re.findall(r"([A-Z])([-+]?[\d.]+)", code)]
+        codes = [f"G{number.normalize():f}" for letter, number in words if letter == "G"]
+        if not set(codes) <= INCHES_IN or "G64" in codes and any(letter == "P" for letter, _ in words):
+            return None
+        words = [(letter, number * decimal.Decimal("25.4") if letter in LENGTHS else number) for letter, number in words]
+        lines.append(" ".join("G21" if (letter, number) == ("G", 20) else f"{letter}{number:f}" for letter, number in words))
+    return "\n".join(lines)
+
+
 class Canon:
     """What rs274 says that a program does: a trace, what it refused, whether it was in inches, and
     whether it has curves, which it does not tell."""
 
     def __init__(self, text):
+        self.read(text)
+        metric = in_millimetres(text) if self.inch and not self.complaint else None
+        if metric is not None:
+            self.read(metric)
+
+    def read(self, text):
         with tempfile.TemporaryDirectory() as folder:
             folder = pathlib.Path(folder)
             (folder / "tool.tbl").write_text("".join(f"T{i} P{i} D0.2 Z0\n" for i in range(1, 60)))
@@ -139,6 +169,7 @@ class Canon:
                 self.follow(*found.groups())
 
     def follow(self, name, text):
+        text = re.sub(r"-(0\.0+)\b", r"\1", text)
         numbers = [float(n) for n in re.findall(r"-?\d+\.\d+", text)]
         if name == "SET_FEED_RATE":
             self.feed = numbers[0]

@@ -14,8 +14,11 @@ import paths
 EFFECTS = ("nothing", "deleted", "incremental", "units", "plane", "feed", "shift", "rapid", "compensated", "rotated",
            "scaled", "inverse", "centres")
 SHIFT = (7.0, -3.0, 2.0)
-# Of a control that has no such thing, or of which it is known what an unknown word does.
-NEVER = {"grbl": {*EFFECTS} - {"nothing", "shift", "deleted"}, "klipper": {"units", "scaled"}, "marlin": {"units", "scaled"},
+# Of a control that has no such thing, or of which it is known what an unknown word does. Printers have neither
+# compensation nor rotation, scaling, inverse time and arc centres from the origin (Klipper: klippy/extras/gcode_arcs.py
+# and gcode_move.py; Marlin: the list of G-codes in its docs), so that no macro of theirs can turn one on.
+NO_WORD_OF_PRINTERS = {"units", "compensated", "rotated", "scaled", "inverse", "centres"}
+NEVER = {"grbl": {*EFFECTS} - {"nothing", "shift", "deleted"}, "klipper": NO_WORD_OF_PRINTERS, "marlin": NO_WORD_OF_PRINTERS,
          "linuxcnc": {"scaled"}, "klartext": {"units"}}
 LIKE_FANUC = ("fanuc", "syntec", "mitsubishi")
 PLANES = {17: (0, 1, 2), 18: (2, 0, 1), 19: (1, 2, 0)}
