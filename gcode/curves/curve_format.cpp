@@ -10,8 +10,11 @@ namespace {
 bool is_certain(const Program& program, const Block& block, const BlockFlow& flow) {
   return block.opacity != ParseStatus::kUnreadable && !block.block_delete && !block.has_checksum &&
          !flow.jump_target && !flow.label_referenced && !flow.in_body &&
-         std::ranges::none_of(program.comments_of(block), [](const Comment& comment) {
-           return comment.kind == CommentKind::kActive;
+         std::ranges::none_of(
+             program.comments_of(block),
+             [](const Comment& comment) { return comment.kind == CommentKind::kActive; }) &&
+         std::ranges::all_of(program.words_of(block), [&](const Word& word) {
+           return word.letter != 'N' || is_block_number(program, block, word);
          });
 }
 

@@ -92,4 +92,8 @@ struct Program {
   }
 };
 
+// Whether the word numbers its block. An N after other words or a comment does not on all controls
+// (LinuxCNC refuses the program), nor does N-1.
+[[nodiscard]] bool is_block_number(const Program& program, const Block& block, const Word& word);
+
 }  // namespace batten::gcode

@@ -186,7 +186,7 @@ class ProgramLister : EventLister {
                       // No state carries it to the position where it counts.
                       : word.letter == 'F' ? !state_after().feed
                       // Controls refuse what is no number of a block, or run it.
-                      : word.letter == 'N' ? !is_block_number(block, word)
+                      : word.letter == 'N' ? !gcode::is_block_number(program_, block, word)
                                            : is_one_of(set_of("MTDH"), word);
     if (acts) add_word(word, moves);
   }
@@ -234,22 +234,11 @@ class ProgramLister : EventLister {
   [[nodiscard]] std::string text_of_words(const Block& block, bool with_label) const {
     std::string text;
     for (const Word& word : program_.words_of(block)) {
-      if (with_label || !is_block_number(block, word)) {
+      if (with_label || !gcode::is_block_number(program_, block, word)) {
         append_word(text, program_.source.text(word.span));
       }
     }
     return text;
-  }
-
-  // An N after other words or a comment is no block number on all controls, nor is N-1.
-  [[nodiscard]] bool is_block_number(const Block& block, const Word& word) const {
-    const auto is_before = [&](const auto& other) {
-      return other.span.begin >= block.span.begin && other.span.begin < word.span.begin;
-    };
-    const std::string_view number = program_.source.text(word.span);
-    return word.letter == 'N' && number.find_first_of("+-") == std::string_view::npos &&
-           std::ranges::none_of(program_.words_of(block), is_before) &&
-           std::ranges::none_of(program_.comments_of(block), is_before);
   }
 
   // Controls number the blocks of Klartext anew, so the number is left out there. A centre in an

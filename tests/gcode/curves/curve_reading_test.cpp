@@ -64,6 +64,13 @@ TEST(Curves, OfAnotherControlAreNotFollowed) {
   EXPECT_FALSE(p.read.motions.back().start_known);
 }
 
+// LinuxCNC: "Bad character 'n' used".
+TEST(Curves, AreNotReadWithANumberBehindTheirFirstWord) {
+  EXPECT_TRUE(CurveProgram(kHead + "N40 " + kG5).line(4).of_curve);
+  EXPECT_FALSE(CurveProgram(kHead + "G5 X18 Y6.4 N5 I10 J0 P-4 Q-2.4 F800\n").line(4).of_curve);
+  EXPECT_FALSE(CurveProgram(kHead + "(a) N40 " + kG5).line(4).of_curve);
+}
+
 TEST(Curves, AreNotFollowedInAnUnsafeState) {
   const std::string bare = "G5 X18 Y6.4 I10 J0 P-4 Q-2.4";
   for (const std::string& text :
