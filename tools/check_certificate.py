@@ -325,7 +325,7 @@ JUMPS = re.compile(r"\b(GOTO[FBC]?|WHILE|REPEATB?|ENDLOOP|UNTIL)\b|\bM99\s*P|\bM
 OWN_COMMENT = re.compile(r"\s*(?:\d+\s+)?(?:\(Batten: smoothed within [\d.]+ (?:mm|in)\)|"
                          r";\s*Batten: smoothed within [\d.]+ (?:mm|in))\s*", re.I)
 ASSIGNMENT = re.compile(r"(?:N\d+)?#(?:\d{1,3}|<[A-Z_]+>)=[-+*/.\d#\[\]]+")  # of a parameter that is no offset
-SETTING = re.compile(r"(?:N\d+)?#<([A-Z][A-Z0-9_]*)>=([-+]?(?:\d+\.?\d*|\.\d+))", re.I)
+SETTING = re.compile(r"(?:N\d+)?#([1-9]\d{0,2}|<[A-Z][A-Z0-9_]*>)=([-+]?(?:\d+\.?\d*|\.\d+))", re.I)
 FLOW = re.compile(r"^\s*(N\d+\s*)?O[<\d]", re.I)  # subprograms, conditions, loops
 TITLE = re.compile(r"[^#=\[\]$]*$")
 CODE = re.compile(r"(?<![A-Z0-9])[GMOT]\s*\d", re.I)
@@ -395,9 +395,7 @@ class Reader:
     """Follows the lines of one control."""
     def __init__(self, control, scale, old_lines):
         self.control, self.scale, self.values = control, scale, {}
-        names = re.findall(r"#<([A-Z][A-Z0-9_]*)>=", "".join("".join(old_lines).upper().split(" ")))
-        steady = control == "linuxcnc" and not any(FLOW.match(line) or JUMPS.search(line) for line in old_lines)
-        self.constants = {name for name in names if steady and names.count(name) == 1}
+        self.steady = control in ("linuxcnc", "grbl") and not any(FLOW.match(line) or JUMPS.search(line) for line in old_lines)
         self.siemens, self.klartext = control == "siemens", control == "heidenhain"
         self.codes = dict(CODES)
         if self.siemens:
@@ -407,17 +405,19 @@ class Reader:
         self.nurbs, self.begun = None, False  # points and knots of a curve; whether words were before
 
     def read(self, text):
-        if self.constants and "#" in text:
-            text = self.with_values(text)
+        text = self.with_values(text) if self.steady and (self.values or "#" in text) else text
         return read_klartext(text) if self.klartext else read_words(text, self.siemens)
 
     def with_values(self, text):
-        """With numbers for named parameters that the program sets once, to a number, and has set before."""
-        setting = SETTING.fullmatch("".join(text.split()))
-        if setting and setting[1].upper() in self.constants:
+        """With numbers for parameters: lines come as they are run, so that each is what it was last set to."""
+        code = "".join(re.sub(r"\([^()]*\)|;.*", "", text).split())
+        setting = SETTING.fullmatch(code)
+        if setting:
             self.values[setting[1].upper()] = setting[2]
-        elif not setting:
-            text = re.sub(r"#<(\w+)>", lambda name: self.values.get(name[1].upper(), name[0]), text)
+        elif "=" in code or SCRIPT.search(text):
+            self.values = {}
+        elif "#" in text:
+            text = re.sub(r"(?<![\d.#])#(\d+(?![\d.])|<\w+>)", lambda name: self.values.get(name[1].upper(), name[0]), text)
             while inner := re.search(r"\[([^\[\]#]*)\]", text):
                 value = decimal_of(inner[1])
                 if value is None:
