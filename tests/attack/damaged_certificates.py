@@ -364,8 +364,8 @@ class Campaign:
 
 
 def constants(batten, folder):
-    """Findings about a program with expressions of parameters: it has to be certified while each is
-    set once, before, and none among the rewritten lines."""
+    """Findings about a program with expressions of parameters: it has to be certified while lines before
+    set each to a number, and none among the rewritten lines."""
     wave = [f"X[#<s>*{0.2 * i:.3f}] Y[#<s>*[{math.sin(0.2 * i):.4f}/2]]" for i in range(1, 101)]
     old, new, proof = (folder / name for name in ("old.ngc", "new.ngc", "new.cert"))
 
@@ -390,7 +390,8 @@ def constants(batten, folder):
         return "refused" if code else "certified"
 
     expected = {("#<s> = 1.5", ""): "certified", ("#<s> = 1.5", "#<s> = 2.0"): "refused",
-                ("#<s> = 1.5", "#5 = 2.0"): "refused", ("#<s> = 1.5", "#<other> = 2.0"): "refused"}
+                ("#<s> = 1.5", "#5 = 2.0"): "refused", ("#<s> = 1.5", "#<other> = 2.0"): "refused",
+                ("#<s> = 9\n#<s> = 1.5", ""): "certified", ("#<s> = 1.5 #<other> = 2", ""): "refused"}
     found = {case: verdict(*case) for case in expected}
     return [f"constants: {case}: {found[case]}" for case in expected if found[case] != expected[case]]
 
