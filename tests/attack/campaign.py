@@ -240,21 +240,21 @@ def attack(options, folder):
     return findings
 
 
-def corpus(options, folder):
-    """Whether LinuxCNC takes the new text where it took the old one."""
-    counts, findings = collections.Counter(), []
-    batten, new = options.batten.resolve(), folder / "corpus.new"
-    for path in sorted(p for p in options.corpus.rglob("*") if p.is_file()):
-        text = path.read_text(encoding="latin-1")
-        canon = None
-        for words in (["--prefer", "time"], ["--prefer", "accuracy"], ["--prefer", "size"], ["--output", "arcs"],
-                      ["--output", "lines"], ["--output", "curves"]):
-            command = [batten, "smooth", path, "-o", new, "--force", "--quiet", "--target", "linuxcnc", "--tolerance",
-                       "0.01", *words]
-            inch = None
+CORPUS_OPTIONS = (["--prefer", "time"], ["--prefer", "accuracy"], ["--prefer", "size"], ["--output", "arcs"],
+                  ["--output", "lines"], ["--output", "curves"])
+
+
+def corpus_program(batten, path):
+    """What LinuxCNC says of one program in all forms: counts by outcome, findings."""
+    counts, findings, canon = collections.Counter(), [], None
+    text = path.read_text(encoding="latin-1")
+    with tempfile.TemporaryDirectory() as folder:
+        new = pathlib.Path(folder, "new.ngc")
+        for words in CORPUS_OPTIONS:
+            command = [batten, "smooth", path, "-o", new, "--force", "--quiet", "--threads", "1", "--target", "linuxcnc",
+                       "--tolerance", "0.01", *words]
             ran = subprocess.run(list(map(str, command)), capture_output=True, text=True)
             if ran.returncode == REFUSED and "--units" in ran.stderr:
-                inch = False
                 ran = subprocess.run([*map(str, command), "--units", "mm"], capture_output=True, text=True)
             if ran.returncode != PROVED:
                 counts["refused by Batten"] += 1
@@ -272,7 +272,20 @@ def corpus(options, folder):
             counts["curves, accepted" if harm is None else "accepted"] += not harm
             if harm:
                 findings.append(f"{path.name} {' '.join(words)}: {harm}")
-                print(findings[-1], flush=True)
+    return counts, findings
+
+
+def corpus(options):
+    """Whether LinuxCNC takes the new text where it took the old one."""
+    counts, findings = collections.Counter(), []
+    paths = sorted(p for p in options.corpus.rglob("*") if p.is_file())
+    with concurrent.futures.ProcessPoolExecutor(options.jobs) as pool:
+        asked = [pool.submit(corpus_program, options.batten.resolve(), path) for path in paths]
+        for done, result in enumerate(concurrent.futures.as_completed(asked), 1):
+            found, wrong = result.result()
+            counts += found
+            findings += wrong
+            print("\n".join([*wrong, f"{done} of {len(paths)} programs, {len(findings)} findings"]), flush=True)
     print(", ".join(f"{what}: {count}" for what, count in sorted(counts.items())))
     return findings
 
@@ -291,7 +304,7 @@ def main():
     options = parser.parse_args()
     folder = (options.folder or pathlib.Path(tempfile.mkdtemp(prefix="batten-campaign-"))).resolve()
     folder.mkdir(parents=True, exist_ok=True)
-    findings = (corpus if options.corpus else attack)(options, folder)
+    findings = corpus(options) if options.corpus else attack(options, folder)
     print(f"{len(findings)} findings" + (f", kept in {folder}/found" if findings and not options.corpus else ""))
     return 1 if findings else 0
 
