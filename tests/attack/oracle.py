@@ -21,6 +21,9 @@ from readers_other import reader_for
 # What chords, and the digits of rs274, add to the tolerance; mm.
 SLACK, RS274_SLACK, RS274_INCH_SLACK = 0.0012, 0.0015, 0.0065
 SPEEDS, STARTS = ("speed ", "SET_SPINDLE_SPEED"), ("spindle ", "START_SPINDLE")
+# In one block LinuxCNC does the second before the first, whatever their order; nothing moves by either.
+OFFSETS = ("SET_G5X_OFFSET", "SET_XY_ROTATION")
+BEFORE_OFFSETS = ("STOP_SPINDLE", "START_SPINDLE", "SET_SPINDLE", "FLOOD_", "MIST_")
 LIKE_LINUXCNC = ("linuxcnc", "grbl", "grblhal", "mach3")
 
 
@@ -33,6 +36,11 @@ def sections(trace, least):
             # A speed beside the word that starts the spindle, in one block or two.
             if joined and value.startswith(SPEEDS) and str(joined[-1][1]).startswith(STARTS):
                 joined.insert(-1, (kind, value, None))
+            elif value.startswith(OFFSETS):
+                at = len(joined)
+                while at > 0 and joined[at - 1][0] == "event" and joined[at - 1][1].startswith(BEFORE_OFFSETS):
+                    at -= 1
+                joined.insert(at, (kind, value, None))
             else:
                 joined.append((kind, value, None))
         elif kind == "cut" and joined and joined[-1][:2] == (kind, what):
