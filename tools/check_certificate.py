@@ -325,7 +325,7 @@ JUMPS = re.compile(r"\b(GOTO[FBC]?|WHILE|REPEATB?|ENDLOOP|UNTIL)\b|\bM99\s*P|\bM
 OWN_COMMENT = re.compile(r"\s*(?:\d+\s+)?(?:\(Batten: smoothed within [\d.]+ (?:mm|in)\)|"
                          r";\s*Batten: smoothed within [\d.]+ (?:mm|in))\s*", re.I)
 ASSIGNMENT = re.compile(r"(?:N\d+)?#(?:\d{1,3}|<[A-Z_]+>)=[-+*/.\d#\[\]]+")  # of a parameter that is no offset
-SETTING = re.compile(r"(?:N\d+)?#([1-9]\d{0,2}|<[A-Z][A-Z0-9_]*>)=([-+]?(?:\d+\.?\d*|\.\d+))", re.I)
+SETTING = re.compile(r"(?:N\d+)?#([1-9]|[12]\d|30|<[A-Z][A-Z0-9_]*>)=([-+]?(?:\d+\.?\d*|\.\d+))", re.I)
 FLOW = re.compile(r"^\s*(N\d+\s*)?O[<\d]", re.I)  # subprograms, conditions, loops
 TITLE = re.compile(r"[^#=\[\]$]*$")
 CODE = re.compile(r"(?<![A-Z0-9])[GMOT]\s*\d", re.I)
@@ -411,13 +411,12 @@ class Reader:
     def with_values(self, text):
         """With numbers for parameters: lines come as they are run, so that each is what it was last set to."""
         code = "".join(re.sub(r"\([^()]*\)|;.*", "", text).split())
-        setting = SETTING.fullmatch(code)
-        if setting:
-            self.values[setting[1].upper()] = setting[2]
-        elif "=" in code or SCRIPT.search(text):
+        if SCRIPT.search(text) or "=" in code and not SETTING.fullmatch(code):
             self.values = {}
+        elif setting := SETTING.fullmatch(code):
+            self.values[setting[1].upper()] = setting[2]
         elif "#" in text:
-            text = re.sub(r"(?<![\d.#])#(\d+(?![\d.])|<\w+>)", lambda name: self.values.get(name[1].upper(), name[0]), text)
+            text = re.sub(r"(?<![\d.#>])#(\d+|<\w+>)(?![\d.])", lambda name: self.values.get(name[1].upper(), name[0]), text)
             while inner := re.search(r"\[([^\[\]#]*)\]", text):
                 value = decimal_of(inner[1])
                 if value is None:
@@ -437,6 +436,7 @@ class Reader:
             if in_run:
                 raise
             state.forget()
+            self.values = {}  # a call may have set any
             if self.klartext:
                 state.inch = inch
             return [], False

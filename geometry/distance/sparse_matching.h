@@ -31,7 +31,8 @@ struct SparsePair {
 // rule would leave the tolerance. The ends of the paths are not among them. Numbers are rounded to
 // as few digits as the proof bears. Nothing where no choice of them proves it.
 //
-// Requires: `matching` is the one of match_paths for these paths and this tolerance, and proved.
+// Requires: `matching` is the one of match_paths for these paths and this tolerance or a greater
+// one, and proved for that.
 [[nodiscard]] std::optional<std::vector<SparsePair>> thin_matching(std::span<const PathPiece> a,
                                                                    std::span<const PathPiece> b,
                                                                    const PathMatching& matching,

@@ -369,7 +369,8 @@ def constants(batten, folder):
     wave = [f"X[#<s>*{0.2 * i:.3f}] Y[#<s>*[{math.sin(0.2 * i):.4f}/2]]" for i in range(1, 101)]
     old, new, proof = (folder / name for name in ("old.ngc", "new.ngc", "new.cert"))
 
-    def verdict(setting, planted):
+    def verdict(setting, planted, behind=None):
+        """`planted`: among the rewritten lines; `behind`: the setting, in both programs."""
         lines = ["G21 G17 G90 G94 G40", setting, "G0 X0 Y0 Z5", "G1 Z-1 F300", "G1 " + wave[0] + " F2000",
                  *wave[1:], "G0 Z5", "G1 X[#<s>*3] F300", "M2"]
         old.write_text("\n".join(lines) + "\n")
@@ -382,6 +383,10 @@ def constants(batten, folder):
         if planted:
             text.insert(int(run[3]) + 5, planted)
             certificate = certificate.replace(run[0], f"run {run[1]} {run[2]} {run[3]} {int(run[4]) + 1}")
+        if behind:
+            text.insert(2, behind)
+            old.write_text("\n".join([*lines[:2], behind, *lines[2:]]) + "\n")
+            certificate = re.sub(r"run (\d+) (\d+) (\d+) ", lambda m: f"run {int(m[1]) + 1} {m[2]} {int(m[3]) + 1} ", certificate)
         new.write_text("\n".join(text))
         proof.write_text(certificate)
         with contextlib.redirect_stdout(io.StringIO()):
@@ -391,7 +396,9 @@ def constants(batten, folder):
 
     expected = {("#<s> = 1.5", ""): "certified", ("#<s> = 1.5", "#<s> = 2.0"): "refused",
                 ("#<s> = 1.5", "#5 = 2.0"): "refused", ("#<s> = 1.5", "#<other> = 2.0"): "refused",
-                ("#<s> = 9\n#<s> = 1.5", ""): "certified", ("#<s> = 1.5 #<other> = 2", ""): "refused"}
+                ("#<s> = 9\n#<s> = 1.5", ""): "certified", ("#<s> = 1.5 #<other> = 2", ""): "refused",
+                ("#<s> = 1.5", "", "(PY,x)"): "refused", ("#<s> = 1.5", "", "O#1 call"): "refused",
+                ("#<s> = 1.5", "", "#<s> = [2]"): "refused", ("#<s> = 1.5", "", "(a)"): "certified"}
     found = {case: verdict(*case) for case in expected}
     return [f"constants: {case}: {found[case]}" for case in expected if found[case] != expected[case]]
 
