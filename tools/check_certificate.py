@@ -311,7 +311,7 @@ SIEMENS_CODES = {code: ("nothing", None) for code in
 SIEMENS_CODES.update({code: ("place", None) for code in "G500 G505 G506 G507 G508".split()})
 SIEMENS_CODES.update({"G70": ("inch", True), "G71": ("inch", False), "G700": ("inch", True),
                       "G710": ("inch", False), "G63": ("cycle", None)})
-SIEMENS_NOT = "G50 G51 G52 G5.1 G31 G98 G99 G73 G74 G76 G81 G10 G92 G68 G69 G15 G16 G7 G8".split()
+SIEMENS_NOT = "G7 G8 G74".split()  # other meanings there
 
 # --- reading lines -------------------------------------------------------------------------------
 WORD = re.compile(r"([A-Z])([-+]?(?:\d+\.?\d*|\.\d+))")
@@ -350,7 +350,7 @@ def read_words(text, siemens):
             line.words = [("message", "")]
     line.known = not SCRIPT.search(text)
     body = "".join(body.upper().split())
-    line.sets = not siemens and bool(ASSIGNMENT.fullmatch(body))
+    line.sets = bool(ASSIGNMENT.fullmatch(body))
     if body in ("", "%") or line.sets:
         line.silent = line.known and not line.words
         return line
@@ -395,7 +395,7 @@ class Reader:
     """Follows the lines of one control."""
     def __init__(self, control, scale, old_lines):
         self.control, self.scale, self.values = control, scale, {}
-        self.steady = control in ("linuxcnc", "grbl") and not any(FLOW.match(line) or JUMPS.search(line) for line in old_lines)
+        self.steady = control in ("linuxcnc", "grbl", "siemens") and not any(FLOW.match(line) or JUMPS.search(line) for line in old_lines)
         self.siemens, self.klartext = control == "siemens", control == "heidenhain"
         self.codes = dict(CODES)
         if self.siemens:
