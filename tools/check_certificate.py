@@ -454,15 +454,15 @@ class Reader:
                     raise Refused(f"{code} twice")
                 codes.append(code)
                 continue
-            place = axes if letter in AXES else offsets if letter in OFFSETS else others
-            if letter in place or letter == "F" and feed is not None:
-                raise Refused(f"{letter} twice")
+            named = letter == "name" or len(letter) > 2
+            place = names if named else axes if letter in AXES else offsets if letter in OFFSETS else others
+            word = text if letter == "name" else letter
+            if word in place or letter == "F" and feed is not None:
+                raise Refused(f"{word} twice")
             if letter == "F":
                 feed = (Fraction(text), self.control == "fanuc" and "." in text)
-            elif letter == "name" or len(letter) > 2:
-                names[letter if letter != "name" else text] = text
             else:
-                place[letter] = text
+                place[word] = text
         if in_run:
             others.pop("S" if others.get("S") == state.speed else "", None)  # said again
             self.check_run_words(codes, others, names, axes or offsets or names)

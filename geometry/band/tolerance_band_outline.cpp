@@ -1,6 +1,5 @@
-#include <CGAL/Exact_rational.h>
+#include <CGAL/Exact_predicates_exact_constructions_kernel.h>
 #include <CGAL/Polygon_set_2.h>
-#include <CGAL/Simple_cartesian.h>
 
 #include <cmath>
 #include <iterator>
@@ -13,7 +12,7 @@
 namespace batten::geometry {
 namespace {
 
-using Kernel = CGAL::Simple_cartesian<CGAL::Exact_rational>;
+using Kernel = CGAL::Exact_predicates_exact_constructions_kernel;
 using Polygon = CGAL::Polygon_2<Kernel>;
 using PolygonSet = CGAL::Polygon_set_2<Kernel>;
 using PolygonWithHoles = CGAL::Polygon_with_holes_2<Kernel>;

@@ -88,4 +88,22 @@ BsplineCurve curve_of_pieces(std::span<const PathPiece> pieces, std::span<const 
   return std::move(joiner).curve();
 }
 
+Path beziers_of(const BsplineCurve& curve) {
+  const std::vector<CubicBezier> pieces = curve.bezier_pieces();
+  return {pieces.begin(), pieces.end()};
+}
+
+Path path_through(std::span<const Point3> points) {
+  Path path;
+  if (points.empty()) return path;
+  path.reserve(points.size() - 1);
+  Point3 last = points.front();
+  for (const Point3& point : points.subspan(1)) {
+    if ((point - last).norm() <= kSamePlace) continue;
+    path.push_back(Line{last, point});
+    last = point;
+  }
+  return path;
+}
+
 }  // namespace batten::geometry

@@ -23,4 +23,10 @@ namespace batten::geometry {
 [[nodiscard]] BsplineCurve curve_of_pieces(std::span<const PathPiece> pieces,
                                            std::span<const double> stations);
 
+// The Bezier pieces of a curve of degree 3 or less.
+[[nodiscard]] Path beziers_of(const BsplineCurve& curve);
+
+// The straight chain through `points`, as pieces. Neighbours that are one place are joined.
+[[nodiscard]] Path path_through(std::span<const Point3> points);
+
 }  // namespace batten::geometry

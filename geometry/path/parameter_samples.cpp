@@ -61,6 +61,17 @@ double max_curvature(std::span<const ParameterSample> samples) {
   return most;
 }
 
+double mean_curvature(std::span<const ParameterSample> samples) {
+  if (samples.empty()) return 0;
+  double sum = 0;
+  for (const ParameterSample& sample : samples) sum += sample.curvature;
+  return sum / static_cast<double>(samples.size());
+}
+
+double sampled_length(std::span<const ParameterSample> samples) {
+  return samples.empty() ? 0 : samples.back().distance;
+}
+
 double bending(std::span<const ParameterSample> samples) {
   double sum = 0;
   for (std::size_t i = 1; i < samples.size(); ++i) {

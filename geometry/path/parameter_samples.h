@@ -23,8 +23,15 @@ struct ParameterSample {
 // distances by the trapezoidal rule. Requires degree 3 or less; throws where steps < 1.
 [[nodiscard]] std::vector<ParameterSample> parameter_samples(const BsplineCurve& curve, int steps);
 
-// 0 without samples, as the next one.
+// 0 without samples, as the next ones.
 [[nodiscard]] double max_curvature(std::span<const ParameterSample> samples);
+
+// Mean over the samples, each counted once whatever the distance to its neighbours: a short span
+// weighs as much as a long one.
+[[nodiscard]] double mean_curvature(std::span<const ParameterSample> samples);
+
+// mm
+[[nodiscard]] double sampled_length(std::span<const ParameterSample> samples);
 
 // The integral of curvature^2 over the length (1/mm), trapezoidal rule.
 [[nodiscard]] double bending(std::span<const ParameterSample> samples);

@@ -34,7 +34,7 @@ struct PrintText {
 
 using Command = std::variant<PrintText, SmoothCommand, SmoothFilesCommand, SetupCommand,
                              ExploreCommand, VerifyCommand, InspectCommand, TimeCommand,
-                             BatchCommand, FreecadCommand, ListCommand>;
+                             BatchCommand, FreecadCommand, ListCommand, MethodsCommand>;
 
 // `name` is one of those that read, list or write programs and machines: "smooth" .. "methods".
 [[nodiscard]] Command command_of(std::string_view name, Arguments& in);

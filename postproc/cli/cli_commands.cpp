@@ -375,6 +375,15 @@ void check_options(const SmoothOptions& options, Arguments& in) {
   }
 }
 
+void read_lambda_into(double& lambda, Arguments& in) {
+  const auto text = in.given.value("guo-lambda");
+  if (!text) return;
+  lambda = read_decimal("guo-lambda", *text, in).value_or(0);
+  if (lambda < 0 || lambda >= 1) {
+    in.complain("--guo-lambda: '{}', expected a number from 0 to below 1", *text);
+  }
+}
+
 // What smooth and batch have in common, but for the progress.
 void read_smooth_options(SmoothingCommand& command, Arguments& in, bool by_marks) {
   SmoothOptions& options = command.options;
@@ -394,6 +403,7 @@ void read_smooth_options(SmoothingCommand& command, Arguments& in, bool by_marks
   if (const auto text = in.given.value("keep-corners")) {
     options.keep_corners_deg = read_decimal("keep-corners", *text, in);
   }
+  read_lambda_into(options.guo_lambda, in);
   read_integer_into(options.threads, "threads", in);
   options.allowed = in.given.values("allow");
   options.own_words = own_words_given(command.profile.get(), in);
@@ -491,6 +501,7 @@ VerifyCommand verify_command(Arguments& in) {
   others.push_back(command.json_file);
   command.certificate_file = in.given.text("certificate");
   check_certificate(command.certificate_file, others, command.tolerance_kind, in);
+  command.twice = in.given.flag("second-check");
   return command;
 }
 
@@ -531,6 +542,18 @@ ListCommand list_command(BuiltIn what, Arguments& in) {
   if (in.given.has("grbl-settings") || (what == BuiltIn::kMachines && in.given.has("show"))) {
     command.machine = machine_given(nullptr, in, "show");
   }
+  return command;
+}
+
+MethodsCommand methods_command(Arguments& in) {
+  check_files({}, in);
+  MethodsCommand command;
+  command.table_file = in.given.text("table");
+  command.json_file = in.given.text("json");
+  command.force = in.given.flag("force");
+  std::optional<double> inches;
+  command.tolerance_mm = tolerance_in(in.given.value("tolerance"), in, inches);
+  read_lambda_into(command.guo_lambda, in);
   return command;
 }
 
@@ -797,7 +820,12 @@ Command command_of(std::string_view name, Arguments& in) {
   if (name == "batch") return batch_command(in);
   if (name == "freecad") return freecad_command(in);
   if (name == "machines") return list_command(BuiltIn::kMachines, in);
-  return list_command(name == "targets" ? BuiltIn::kTargets : BuiltIn::kMethods, in);
+  if (name == "targets") return list_command(BuiltIn::kTargets, in);
+  if (in.given.has("table")) return methods_command(in);
+  for (const char* option : {"tolerance", "guo-lambda"}) {
+    if (in.given.has(option)) in.complain("--{}: goes with --table", option);
+  }
+  return list_command(BuiltIn::kMethods, in);
 }
 
 void refuse_words_after(std::size_t expected, std::string_view what, Arguments& in) {

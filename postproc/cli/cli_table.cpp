@@ -103,6 +103,10 @@ std::string_view one_of() {
   return names;
 }
 
+constexpr OptionRow kGuoLambda = setting(
+    "guo-lambda", kValue, "0..1",
+    "of guo-literal: the part of what a blend leaves of a side that the next one leaves too", "0");
+
 std::vector<OptionRow> smooth_rows() {
   return {
       kTarget,
@@ -119,6 +123,7 @@ std::vector<OptionRow> smooth_rows() {
       setting("linearize", kValue, one_of<linearizations>(),
               "how lines are laid along a curve; default: chord, minlink with --prefer size"),
       setting("keep-corners", kValue, "DEG", "turns of more degrees than this stay corners"),
+      kGuoLambda,
       kUnits,
       kSource,
       kDecimals,
@@ -163,6 +168,8 @@ std::vector<OptionRow> setup_rows() {
 std::vector<OptionRow> verify_rows() {
   return {
       kTolerance,
+      option("second-check", kFlag, "",
+             "check flat sections a second way, too: by the region of the tolerance as polygons"),
       kProfile,
       option(
           "target", kValue, "NAME|FILE.toml",
@@ -374,7 +381,18 @@ std::vector<CommandRow> make_command_rows() {
        "  batten machines --show router > my.toml\n"
        "  batten machines --show mill.ini\n"
        "  batten machines --grbl-settings settings.txt > my.toml"},
-      {"methods", "List the ways of smoothing.", {kJson, kForce}, {}, "Example:\n  batten methods"},
+      {"methods",
+       "List the ways of smoothing, or what each makes of the paths of a file.",
+       {option("table", kValue, "FILE.json",
+               "paths as lists of points (docs/algorithms/methods.md), - is standard input"),
+        option("tolerance", kValue, "LENGTH", "of all these paths, in place of the file's"),
+        kGuoLambda, kJson, kForce},
+       {},
+       "Examples:\n"
+       "  batten methods\n"
+       "  batten methods --table docs/algorithms/polylines.json\n"
+       "prints for each path and method the time by the planner, the greatest curvature, the\n"
+       "proved deviation and the number of lines and cubics."},
       {"explain",
        "Say what the id of a kept run, a message or a violation means, and what to do about it.",
        {},

@@ -121,6 +121,7 @@ struct VerifyCommand : ReadingCommand {
   std::shared_ptr<const TargetProfile> profile;      // whose words the new program may have
   std::shared_ptr<const gcode::Control> own_target;  // as a machine is set up
   std::string certificate_file;                      // of --tolerance-kind path only
+  bool twice = false;                                // --second-check
 };
 [[nodiscard]] int run(const VerifyCommand& command);
 
@@ -163,5 +164,16 @@ struct ListCommand {
   bool force = false;
 };
 [[nodiscard]] int run(const ListCommand& command);
+
+// What each method makes of the paths of a file (docs/algorithms/methods.md has the format), as
+// tables on standard output, each when it is known.
+struct MethodsCommand {
+  std::string table_file;              // - is standard input
+  std::optional<double> tolerance_mm;  // in place of the file's
+  double guo_lambda = 0;
+  std::string json_file;
+  bool force = false;
+};
+[[nodiscard]] int run(const MethodsCommand& command);
 
 }  // namespace batten::postproc

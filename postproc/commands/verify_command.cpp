@@ -66,6 +66,15 @@ std::string text_of(const Violation& violation, const VerifyCommand& command) {
   return fmt::format("{}: {}: {}{}\n", place, violation.id, violation.message, old_place);
 }
 
+std::string second_check_text(const Verification& verification, const VerifyCommand& command) {
+  if (!command.twice) return "";
+  const auto flat = std::ranges::count_if(verification.stretches, &Stretch::in_region);
+  return fmt::format(
+      "  second check: {} of {} changed sections lie in one plane; each path of them lies in the "
+      "region of the tolerance about the other, and passes its holes on the same side\n",
+      flat, verification.stretches.size());
+}
+
 std::string summary_of(const Verification& verification, const VerifyCommand& command) {
   if (!verification.proved()) {
     return fmt::format("NOT PROVED: {} of the new program against the old one\n",
@@ -77,14 +86,18 @@ std::string summary_of(const Verification& verification, const VerifyCommand& co
           ? fmt::format(", of a corner from the new path {:.4f} mm", verification.corner_mm)
           : "";
   return fmt::format(
-      "proved: {} keeps {:g} mm to {}, {}\n"
-      "  greatest deviation {:.4f} mm{}{}; {} changed sections, {} acting words and blocks the "
-      "same\n",
-      command.new_program, command.tolerance_mm, command.old_program,
-      band ? "in order, in the band reading" : "both ways and in order", verification.deviation_mm,
-      verification.deviation_line > 0 ? fmt::format(" near line {}", verification.deviation_line)
-                                      : "",
-      corners, verification.stretches.size(), verification.events_compared);
+             "proved: {} keeps {:g} mm to {}, {}\n"
+             "  greatest deviation {:.4f} mm{}{}; {} changed sections, {} acting words and blocks "
+             "the "
+             "same\n",
+             command.new_program, command.tolerance_mm, command.old_program,
+             band ? "in order, in the band reading" : "both ways and in order",
+             verification.deviation_mm,
+             verification.deviation_line > 0
+                 ? fmt::format(" near line {}", verification.deviation_line)
+                 : "",
+             corners, verification.stretches.size(), verification.events_compared) +
+         second_check_text(verification, command);
 }
 
 Json json_of(const Stretch& stretch) {
@@ -96,7 +109,8 @@ Json json_of(const Stretch& stretch) {
           {"proved", comparison.verdict == geometry::Verdict::kProved},
           {"at_least_mm", comparison.bounds.at_least},
           {"at_most_mm", comparison.bounds.at_most},  // infinite: null
-          {"certificate_size", comparison.certificate_size}};
+          {"certificate_size", comparison.certificate_size},
+          {"in_region", stretch.in_region}};
 }
 
 Json json_of(const Violation& violation) {
@@ -139,7 +153,9 @@ int end_not_understood(gcode::Diagnostics& of_old, const gcode::SourceText& sour
 }
 
 Promise promise_of(const VerifyCommand& command) {
-  return {command.tolerance_mm, command.tolerance_kind, command.side, command.target};
+  Promise promise(command.tolerance_mm, command.tolerance_kind, command.side, command.target);
+  promise.twice = command.twice;
+  return promise;
 }
 
 // The two programs, as they were read and compared.

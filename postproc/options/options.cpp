@@ -50,6 +50,8 @@ constexpr Choice<Method> kMethods[] = {
      "as the thesis has it, for comparison: may make a path worse", false},
     {Method::kGuoLiteral, "guo-literal",
      "as the paper has it, for comparison: half the tolerance or less is used", false},
+    {Method::kOzcanUsual, "ozcan-usual",
+     "as the paper's corner without its search, for comparison", false},
     {Method::kNone, "none", "nothing is rewritten: checks and reports only"},
 };
 

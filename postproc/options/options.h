@@ -30,6 +30,7 @@ enum class Method {
   kOzcan,
   kNaseathLiteral,
   kGuoLiteral,
+  kOzcanUsual,
   kNone,
 };
 enum class Prefer { kTime, kAccuracy, kSize };
@@ -78,6 +79,7 @@ struct SmoothOptions {
   Method method = Method::kBest;
   Form output = Form::kAuto;
   Prefer prefer = Prefer::kTime;
+  double guo_lambda = 0;                   // of guo-literal, see geometry::GuoOptions
   std::optional<Linearize> linearize;      // nothing: what serves `prefer`, see linearize_of
   std::optional<double> keep_corners_deg;  // turns above this stay corners
   std::vector<std::string> allowed;        // --allow

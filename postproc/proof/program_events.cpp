@@ -140,7 +140,11 @@ class ProgramLister : EventLister {
     }
     const bool moves = meaning.motion >= 0;
     acts_with_motion_ = false;
-    for (const Word& word : program_.words_of(block)) list_word(block, word, moves);
+    for (const bool stops : {false, true}) {  // the program stops when its block is done
+      for (const Word& word : program_.words_of(block)) {
+        if (is_stop(word) == stops) list_word(block, word, moves);
+      }
+    }
     if (!moves) return;
     if (!add_motion(meaning, state_after().feed_without_point) && !state_after().feed) {
       EventLister::add_word("cut to nowhere before the first feed");  // refused, or not
@@ -177,6 +181,11 @@ class ProgramLister : EventLister {
     }
     if (word.letter == 'M') return word.value < kFirstOfTheUser;
     return is_one_of(set_of("NFSTDH"), word);
+  }
+
+  static bool is_stop(const Word& word) {
+    return word.letter == 'M' && word.is_number &&
+           gcode::row_of_m(gcode::code_of(word)).group == CodeGroup::kStop;
   }
 
   void list_word(const Block& block, const Word& word, bool moves) {

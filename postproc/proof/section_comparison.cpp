@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "gcode/controls/arc_rules.h"
+#include "geometry/band/band_region.h"
 #include "geometry/band/tolerance_band.h"
 #include "geometry/distance/band_comparison.h"
 #include "geometry/path/path.h"
@@ -422,16 +423,47 @@ class StretchComparer {
     if (comparison.paths.verdict == Verdict::kProved) {
       look_beside_the_distance(pair, middle, comparison.paths);
       result_.stretches.push_back(stretch_of(middle, std::move(comparison)));
+      look_twice(middle);
       return;
     }
     // The same ends may be passed otherwise than together: only the whole is a refutation.
     comparison = compare(pair, promise_);
     if (comparison.paths.verdict != Verdict::kProved) {
       result_.violations.push_back(distance_violation(pair, comparison.paths, tolerance_));
-    } else {
-      look_beside_the_distance(pair, pair, comparison.paths);
+      result_.stretches.push_back(stretch_of(pair, std::move(comparison)));
+      return;
     }
+    look_beside_the_distance(pair, pair, comparison.paths);
     result_.stretches.push_back(stretch_of(pair, std::move(comparison)));
+    look_twice(pair);
+  }
+
+  // Of the stretch that was added last: both ways in the strict reading; in the band reading a
+  // corner of the old path may be farther from the new one.
+  void look_twice(const PartPair& pair) {
+    if (!promise_.twice) return;
+    const Path before = pair.before.path();
+    const Path after = pair.after.path();
+    auto check = geometry::check_in_region(before, after, tolerance_);
+    if (!check) return;
+    if (check->holds() && promise_.kind == geometry::ToleranceKind::kPath) {
+      check = geometry::check_in_region(after, before, tolerance_);
+    }
+    if (!check || check->holds()) {
+      result_.stretches.back().in_region = true;
+      return;
+    }
+    const geometry::Point3& place = check->place;
+    result_.violations.push_back(
+        {ViolationKind::kNotProved, "second-check", pair.before.line_near(place),
+         pair.after.line_near(place), 0,
+         fmt::format("the distance is proved, but {} at X{:.4f} Y{:.4f} Z{:.4f}: one of the two is "
+                     "wrong. Do not run the new program, and send both to who maintains Batten",
+                     check->is_inside
+                         ? "a hole of the region of the tolerance is passed on the "
+                           "other side"
+                         : "one path leaves the region of the tolerance about the other",
+                     place.x(), place.y(), place.z())});
   }
 
   // What else a path that keeps the distance may do wrong. `proved`: the part that keeps it.

@@ -23,6 +23,7 @@ struct Promise {
   geometry::Side side = geometry::Side::kBoth;
   // That has to take what is new; nullptr: nobody is asked.
   const gcode::Control* target = nullptr;
+  bool twice = false;  // a second check of flat paths (geometry/band/band_region)
 
   // The strict reading, when nothing else is said.
   Promise(double tolerance, geometry::ToleranceKind reading = geometry::ToleranceKind::kPath,
@@ -43,6 +44,7 @@ struct Stretch {
   std::uint32_t new_first_line = 0, new_last_line = 0;
   geometry::PathComparison comparison;
   double corner_mm = 0;  // band reading: greatest distance of a corner that was cut; 0: none was
+  bool in_region = false;            // what Promise::twice asks for: it is flat, and was found there
   std::uint32_t old_worst_line = 0;  // where the greatest distance was met
   std::uint32_t new_worst_line = 0;
 };

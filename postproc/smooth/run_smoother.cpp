@@ -106,6 +106,7 @@ class RunSmoother {
     request.keep_corner_angle = keep_corner_angle_of(options());
     request.limits = limits_of(*options().machine, greatest_feed(run()));
     request.jerk = options().machine->max_jerk();
+    request.guo_lambda = options().guo_lambda;
     request.scatter = std::min(arc_scatter(run()), kRun.arcs_spend * request.tolerance);
     return request;
   }

@@ -206,6 +206,14 @@ class Pair:
         word = self.chance.choice(ACTING["klartext" if self.source.klartext else "plain"])
         return "word", True, self.with_line(n, f"{self.lines[n]} {word}"), self.scrambled(self.certificate)
 
+    def damage_said_twice(self):
+        n = self.chance.choice(self.moves)
+        axes = re.findall(r"(?<![A-Z])[XYZ]", self.lines[n])
+        if len(set(axes)) < 2:
+            return None
+        lines = self.with_line(n, re.sub(rf"(?<![A-Z]){axes[0]}", axes[1], self.lines[n]))
+        return "said twice", True, lines, self.scrambled(self.certificate)
+
     def damage_mode_line(self):
         n = self.chance.choice(self.moves)
         word = self.chance.choice(["L M8", "CYCL DEF 7.0", "LBL 1", "L FMAX"] if self.source.klartext else

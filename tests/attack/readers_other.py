@@ -256,6 +256,8 @@ class KlartextReader(Reader):
                     self.act("anything")
             elif self.STILL.match(body):
                 self.event(body)
+                if body.startswith("CYCL DEF 200"):  # a new cycle ends the modal call of the last one
+                    self.unsafe.discard("M89")
             elif self.SWITCHES.match(body):
                 self.event(body)
                 self.act("moves")

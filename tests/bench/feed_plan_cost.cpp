@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "geometry/path/bspline_curve.h"
+#include "geometry/path/joined_curve.h"
 #include "geometry/path/path.h"
 #include "postproc/machine/models/cycle_time.h"
 #include "postproc/machine/planner/feed_plan.h"
@@ -25,7 +26,7 @@ using geometry::Point3;
 using geometry::Vector3;
 
 Path chords(int pieces) { return postproc::row_of_chords(0.2 * pieces, 0.2); }
-Path row(int pieces) { return postproc::path_of(postproc::row_as_curve(0.5 * pieces, 0.5)); }
+Path row(int pieces) { return geometry::beziers_of(postproc::row_as_curve(0.5 * pieces, 0.5)); }
 
 // Bends of all sizes, each piece as long as a bend: the most expensive kind.
 Path wave(int pieces) {
@@ -35,7 +36,7 @@ Path wave(int pieces) {
     control.emplace_back(2 * i, 4 * std::sin(0.7 * i) + std::sin(2.3 * i), std::sin(1.1 * i));
     if (i >= 0 && i <= pieces) knots.push_back(i);
   }
-  return postproc::path_of({geometry::BsplineBasis::clamped(3, knots), control});
+  return geometry::beziers_of({geometry::BsplineBasis::clamped(3, knots), control});
 }
 
 // Left and right in turn, tangent, radii from 1 to 4 mm.

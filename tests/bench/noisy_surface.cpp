@@ -20,6 +20,7 @@
 
 #include "gcode/controls/built_in.h"
 #include "geometry/fitting/fair/fair_measure.h"
+#include "geometry/path/joined_curve.h"
 #include "postproc/machine/planner/feed_plan.h"
 #include "postproc/smooth/methods/run_curve.h"
 #include "postproc/stream/pipeline.h"
@@ -79,7 +80,7 @@ CurveFigures figures_of(const Rows& rows, double tolerance, const postproc::Mach
       length += step;
       f.most = std::max(f.most, bend);
     }
-    f.time += postproc::planned_time(postproc::path_of(path.curve), limits);
+    f.time += postproc::planned_time(geometry::beziers_of(path.curve), limits);
     f.corners += path.kept_corners;
     f.rounds += path.rounds;
     f.points += path.curve.control_points().size();
@@ -169,7 +170,7 @@ void needs(double cam, double noise, const Settings& settings) {
     for (const int needy : {0, 1}) {
       const auto path = fair_of(row, 2 * cam, machine, needy == 1 ? feed : 60);
       places[needy] += time_by_places(path.curve, limits);
-      planned[needy] += postproc::planned_time(postproc::path_of(path.curve), planner);
+      planned[needy] += postproc::planned_time(geometry::beziers_of(path.curve), planner);
     }
   }
   fmt::print("{:<6} {:<5} | {:>7.3f} {:>7.3f} {:>5.1f} % | {:>7.3f} {:>7.3f} {:>5.1f} %\n", cam,

@@ -207,6 +207,13 @@ TEST_F(CommandLine, VerifyAcceptsWhatSmoothWrote) {
   EXPECT_LE(report["deviation_mm"].get<double>(), 0.01);
 }
 
+TEST_F(CommandLine, VerifyLooksASecondTime) {
+  ASSERT_EQ(batten(kSmooth).exit_code, 0);
+  const std::string verify = "verify part.nc part.smooth.nc --tolerance 0.01 ";
+  expect_exit(batten(verify + "--second-check"), 0, {"second check: 1 of 1 changed sections"});
+  EXPECT_FALSE(contains(expect_exit(batten(verify), 0).err, "second check"));
+}
+
 TEST_F(CommandLine, VerifyRejectsAChangedProgram) {
   std::string text = wave_program();
   text.insert(text.find("G0 Z5"), "M9\n");

@@ -64,6 +64,8 @@ const AnswerRow kAnswers[] = {
     {"MachinesUsage", "machines --show nothing", 1, "failure", "nothing"},
     {"Methods", "methods", 0, "methods", ""},
     {"MethodsUsage", "methods more", 1, "failure", "more"},
+    {"MethodTable", "methods --table corner.json", 0, "method-table", ""},
+    {"MethodTableFile", "methods --table part.nc", 2, "failure", "part.nc"},
     {"NoSuchCommand", "smoth part.nc", 1, "failure", "smooth"},
 };
 
@@ -71,6 +73,7 @@ class JsonAnswer : public testing::TestWithParam<AnswerRow> {
  protected:
   JsonAnswer() {
     folder_.put("part.nc", wave_program());
+    folder_.put("corner.json", R"({"corner": {"points": [[0, 0], [9, 0], [9, 9]]}})");
     folder_.put("other.nc", "G21 G90 G17\nG0 X0 Y0 Z5\nG1 Z-1 F300\nG1 X50 Y0 F2000\nG0 Z5\nM2\n");
     folder_.put("open.nc", "G90 G17\nG0 X0 Y0 Z5\nG1 Z-1 F300\nX1\nX2 Y1\nX3\nM2\n");
     folder_.put("a.out", std::string("\x7f"

@@ -10,8 +10,7 @@
 
 #include "geometry/basic/point.h"
 #include "geometry/basic/rounding.h"
-#include "geometry/path/bspline_curve.h"
-#include "geometry/path/path.h"
+#include "geometry/path/joined_curve.h"
 
 namespace batten::geometry {
 
@@ -145,24 +144,5 @@ struct FinishSurface {
                          cam_tolerance, 3);
   }
 };
-
-inline Path beziers_of(const BsplineCurve& curve) {
-  const std::vector<CubicBezier> pieces = curve.bezier_pieces();
-  return {pieces.begin(), pieces.end()};
-}
-
-// The straight chain through `points`, as pieces. Neighbours that are one place are joined.
-inline Path path_through(std::span<const Point3> points) {
-  Path path;
-  if (points.empty()) return path;
-  path.reserve(points.size() - 1);
-  Point3 last = points.front();
-  for (const Point3& point : points.subspan(1)) {
-    if ((point - last).norm() <= kSamePlace) continue;
-    path.push_back(Line{last, point});
-    last = point;
-  }
-  return path;
-}
 
 }  // namespace batten::geometry

@@ -16,12 +16,6 @@
 
 namespace batten::postproc {
 
-// A curve of degree 3 or less as a path: its Bezier pieces.
-inline geometry::Path path_of(const geometry::BsplineCurve& curve) {
-  const auto pieces = curve.bezier_pieces();
-  return {pieces.begin(), pieces.end()};
-}
-
 // Seconds.
 inline double planned_time(std::span<const geometry::PathPiece> path,
                            const KinematicPathLimits& limits, const PlanEnds& ends = {},

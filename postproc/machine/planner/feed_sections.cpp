@@ -105,6 +105,15 @@ bool has_length(const PathPiece& piece) {
   return way.norm() > geometry::kSamePlace || geometry::length_of(piece) > geometry::kSamePlace;
 }
 
+// What is left of a line between two blends because its vertices are rounded: it has the direction
+// of rounding, and the machine passes it within a thousandth of a period.
+bool is_of_rounding(std::span<const double> lengths, std::size_t i) {
+  constexpr double kShortest = 3e-5;  // mm
+  constexpr double kPart = 0.01;      // of both neighbours
+  if (lengths[i] >= kShortest || i == 0 || i + 1 == lengths.size()) return false;
+  return lengths[i] < kPart * std::min(lengths[i - 1], lengths[i + 1]);
+}
+
 // The pieces between two stops.
 class PartChain {
  public:
@@ -247,10 +256,13 @@ PassedJoints for_each_section(std::span<const PathPiece> path, const KinematicPa
   }
   PassedJoints joints;
   PartChain chain(limits);
+  std::vector<double> lengths(path.size());
+  std::ranges::transform(path, lengths.begin(),
+                         [](const PathPiece& piece) { return geometry::length_of(piece); });
   SectionEnd from = {ends.start_speed, ends.start_speed > 0};
   LengthDerivatives last;
   for (std::size_t i = 0; i < path.size(); ++i) {
-    if (!has_length(path[i])) continue;
+    if (!has_length(path[i]) || is_of_rounding(lengths, i)) continue;
     const LengthDerivatives start = derivatives_by_length(path[i], 0);
     if (!chain.is_empty()) {
       const double bound = joint_speed(last, start, limits);

@@ -119,14 +119,17 @@ Options corner_options(const CurveRequest& request, Options options = {}) {
 
 std::optional<SmoothCurve> guo_curve(std::span<const Point3> run, const CurveRequest& request,
                                      bool literal) {
-  const auto options =
-      corner_options(request, literal ? geometry::GuoOptions::literal(request.tolerance, 0)
-                                      : geometry::GuoOptions{});
+  const auto options = corner_options(
+      request, literal ? geometry::GuoOptions::literal(request.tolerance, request.guo_lambda)
+                       : geometry::GuoOptions{});
   return as_one_curve<geometry::GuoBlend>(run, geometry::guo_path(run, options), request.kind);
 }
 
-std::optional<SmoothCurve> ozcan_curve(std::span<const Point3> run, const CurveRequest& request) {
+std::optional<SmoothCurve> ozcan_curve(std::span<const Point3> run, const CurveRequest& request,
+                                       bool searched) {
   auto options = corner_options<geometry::OzcanOptions>(request);
+  constexpr double kNoTurn = 4;  // radians, more than any
+  if (!searched) options.least_searched_turn = kNoTurn;
   options.limits = request.limits;
   return as_one_curve<geometry::OzcanBlend>(run, geometry::ozcan_path(run, options), request.kind);
 }
@@ -255,7 +258,9 @@ std::optional<RunCurve> curve_of(Method method, std::span<const Point3> run,
       case Method::kGuoLiteral:
         return guo_curve(run, request, true);
       case Method::kOzcan:
-        return ozcan_curve(run, request);
+        return ozcan_curve(run, request, true);
+      case Method::kOzcanUsual:
+        return ozcan_curve(run, request, false);
       case Method::kBest:
       case Method::kNone:
         break;

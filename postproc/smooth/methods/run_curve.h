@@ -36,6 +36,7 @@ struct CurveRequest {
   double scatter = 0;                                     // mm, see geometry::FairOptions
   bool accurate = false;                                  // see geometry::FairOptions
   bool near = true;                                       // the same
+  double guo_lambda = 0;                                  // see geometry::GuoOptions
 };
 
 [[nodiscard]] double greatest_feed(const Run& run);  // mm/min

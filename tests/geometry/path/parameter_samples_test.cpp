@@ -7,7 +7,6 @@
 
 #include "tests/support/knot_insertion.h"
 #include "tests/support/naseath_cases.h"
-#include "tests/support/sample_means.h"
 
 namespace batten::geometry {
 namespace {

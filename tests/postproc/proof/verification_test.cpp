@@ -134,6 +134,9 @@ std::vector<WrongCase> wrong_cases() {
        "distance"},
       {"ArcTheOtherWayRound", arcs, replaced(arcs, "G2 ", "G3 "), "distance", 4, 4},
       {"ArcInAnotherPlane", arcs, replaced(arcs, "G17", "G18"), "state-changed"},
+      // A stop comes when the rest of its block is done.
+      {"StopInTheBlockOfAnOffset", "G21 G90\nG54\nG0 X0 Y0 Z0\nG1 X5 F100\nM1\nG55\nG0 X9\nM30\n",
+       "G21 G90\nG54\nG0 X0 Y0 Z0\nG1 X5 F100\nM1 G55\nG0 X9\nM30\n", "event-changed", 5, 5},
       {"LostUnits", kProgram, but("G21 ", ""), "event-lost", 3, 0},
       {"Inches", kProgram, but("G21", "G20"), "event-changed", 3, 3},
       {"LostAbsolute", kProgram, but("G90 ", ""), "event-lost", 3, 0},
@@ -341,6 +344,24 @@ TEST(Verify, SaysHowFarAProvedPathIs) {
   ASSERT_EQ(found.stretches.size(), 1U);
   EXPECT_EQ(found.stretches.front().old_first_block, 10U);  // line 11
   EXPECT_EQ(found.stretches.front().old_last_block, 11U);
+}
+
+// A flat section, and one that climbs.
+TEST(Verify, LooksASecondTimeAtFlatSectionsWhereThatIsAsked) {
+  const auto program = [](const std::string& y, const std::string& z) {
+    return "G21 G90 G17\nG0 X0 Y0 Z0\nG1 X5 Y" + y + " F100\nX10 Y0\nM8\nG1 X15 Y" + y + " Z" + z +
+           "\nX20 Y0 Z2\nM30\n";
+  };
+  Promise promise(0.01);
+  for (const bool twice : {false, true}) {
+    promise.twice = twice;
+    const Verification found =
+        verify(ReadText(program("0", "1")).read(), ReadText(program("0.008", "1")).read(), promise);
+    EXPECT_TRUE(found.proved());
+    ASSERT_EQ(found.stretches.size(), 2U);
+    EXPECT_EQ(found.stretches[0].in_region, twice);
+    EXPECT_FALSE(found.stretches[1].in_region);
+  }
 }
 
 TEST(Verify, ListsNoStretchWhereNothingChanged) {

@@ -12,7 +12,6 @@
 #include "geometry/path/parameter_samples.h"
 #include "tests/support/naseath_cases.h"
 #include "tests/support/noisy_curves.h"
-#include "tests/support/sample_means.h"
 
 namespace batten::geometry {
 namespace {

@@ -8,7 +8,6 @@
 #include "geometry/fitting/naseath/naseath.h"
 #include "geometry/path/parameter_samples.h"
 #include "tests/support/naseath_cases.h"
-#include "tests/support/sample_means.h"
 
 namespace batten::geometry {
 namespace {

@@ -8,6 +8,7 @@
 #include <random>
 #include <vector>
 
+#include "geometry/path/joined_curve.h"
 #include "postproc/machine/planner/feed_plan.h"
 #include "postproc/machine/planner/feed_plan_path.h"
 #include "tests/support/planned_paths.h"
@@ -55,7 +56,7 @@ struct Case {
 Case random_case(int seed) {
   std::mt19937 random(static_cast<unsigned>(seed));
   Case made;
-  made.path = seed % 5 == 4 ? slots(4, seed) : path_of(random_curve(random));
+  made.path = seed % 5 == 4 ? slots(4, seed) : geometry::beziers_of(random_curve(random));
   made.limits = random_limits(random);
   return made;
 }
@@ -108,7 +109,7 @@ TEST(FeedPlanProperties, SamplesAreOneMotionFromStartToEnd) {
 TEST(FeedPlanProperties, HasATimeWhereThePathTurnsBack) {
   for (const unsigned seed : {9u, 387u}) {
     std::mt19937 random(seed);
-    const Path path = path_of(random_curve(random, true));
+    const Path path = geometry::beziers_of(random_curve(random, true));
     const KinematicPathLimits limits = random_limits(random);
     EXPECT_TRUE(std::isfinite(planned_time(path, limits))) << seed;
   }

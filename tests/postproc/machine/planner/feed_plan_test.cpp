@@ -7,9 +7,11 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "geometry/fitting/corners/guo_corner.h"
+#include "postproc/machine/planner/s_curve.h"
 #include "tests/support/naseath_cases.h"
+#include "tests/support/paths.h"
 #include "tests/support/planned_paths.h"
-#include "tests/support/s_curve.h"
 
 namespace batten::postproc {
 namespace {
@@ -45,6 +47,21 @@ TEST(PlanFeed, DoesNotFeelWhereALineIsCut) {
   EXPECT_NEAR(plan.time, 1.589703, 1e-6);
   EXPECT_EQ(plan.stops, 0);
   EXPECT_LE(greatest_use(cut, plan, corner_limits(), 1e-4).share, 1.005);
+}
+
+// Between two blends of a zigzag whose vertices have so many decimals the rest of a line is of
+// their last digit's length.
+TEST(PlanFeed, PassesOverTheRestOfALineThatIsOfRounding) {
+  const auto time_of = [](int decimals) {
+    std::vector<geometry::Point3> points = geometry::noisy_half_circle(20, 400, 0.03);
+    points.resize(12);
+    for (geometry::Point3& point : points) point = geometry::printed(point, decimals);
+    return planned_time(geometry::guo_path(points, {{.tolerance = 0.05}}).pieces, corner_limits());
+  };
+  const double exact = time_of(12);
+  for (int decimals = 4; decimals < 12; ++decimals) {
+    EXPECT_NEAR(time_of(decimals) / exact, 1, 2e-3) << decimals;
+  }
 }
 
 TEST(PlanFeed, HasNoNodesWithoutAWay) {
@@ -195,8 +212,8 @@ TEST(ThesisPath, TakesTheTimeOfTheReference) {
     limits.tangential_acceleration = limits.normal_acceleration = 4000;
     limits.tangential_jerk = 20000;
     const PlanEnds ends = {s_curve.front().velocity, s_curve.back().velocity};
-    const FeedPlan plan = plan_feed(path_of(curve), limits, ends);
-    const Use use = greatest_use(path_of(curve), plan, limits, 1e-4);
+    const FeedPlan plan = plan_feed(geometry::beziers_of(curve), limits, ends);
+    const Use use = greatest_use(geometry::beziers_of(curve), plan, limits, 1e-4);
     fmt::print("{} {:.4f} s, reference {:.3f}, S-curve {:.4f}, {} nodes, {:.4f} of {}\n", test.name,
                plan.time, test.reference, s_curve_time(samples, {}), plan.nodes.size(), use.share,
                use.where);

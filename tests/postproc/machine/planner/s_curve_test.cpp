@@ -1,5 +1,5 @@
 
-#include "tests/support/s_curve.h"
+#include "postproc/machine/planner/s_curve.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -16,7 +16,6 @@
 #include "geometry/path/parameter_samples.h"
 #include "tests/support/naseath_cases.h"
 #include "tests/support/processor_time.h"
-#include "tests/support/sample_means.h"
 
 namespace batten::postproc {
 namespace {

@@ -9,7 +9,7 @@
 #include "geometry/fitting/tube/tube_smoothing.h"
 #include "tests/support/naseath_cases.h"
 #include "tests/support/noisy_curves.h"
-#include "tests/support/s_curve.h"
+#include "postproc/machine/planner/s_curve.h"
 
 namespace batten::postproc {
 namespace {

@@ -158,6 +158,7 @@ INSTANTIATE_TEST_SUITE_P(Methods, EveryMethod,
                                          NamedMethod{Method::kNaseathLiteral, "NaseathLiteral"},
                                          NamedMethod{Method::kGuo, "Guo"},
                                          NamedMethod{Method::kGuoLiteral, "GuoLiteral"},
+                                         NamedMethod{Method::kOzcanUsual, "OzcanUsual"},
                                          NamedMethod{Method::kOzcan, "Ozcan"},
                                          NamedMethod{Method::kTimeOptimal, "Racing"}),
                          [](const auto& test) { return test.param.name; });

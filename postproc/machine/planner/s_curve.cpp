@@ -1,34 +1,13 @@
-// The trajectory generator of Naseath 2007, section 4.5, for comparison with his tables only:
-// cycle times that Batten decides with come from postproc/machine/models/cycle_time.h. It stops
-// accelerating at every extremum of the curvature, which costs 4 to 32 % of the time
-// (docs/algorithms/naseath.md).
-#pragma once
+#include "postproc/machine/planner/s_curve.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <span>
-#include <vector>
-
-#include "geometry/path/parameter_samples.h"
 
 namespace batten::postproc {
+namespace {
 
-struct SCurveLimits {
-  double velocity = 400;       // mm/s
-  double acceleration = 4000;  // mm/s^2, along the path, and across it: curvature * v^2
-  double jerk = 20000;         // mm/s^3, along the path
-};
-
-// A place that is passed at this speed without acceleration.
-struct SCurveNode {
-  double distance = 0;  // mm from the start
-  double velocity = 0;  // mm/s
-};
-
-namespace s_curve {
-
-inline double allowed_velocity(double curvature, const SCurveLimits& limits) {
+double allowed_velocity(double curvature, const SCurveLimits& limits) {
   if (curvature <= 0) return limits.velocity;
   return std::min(limits.velocity, std::sqrt(limits.acceleration / curvature));
 }
@@ -42,8 +21,8 @@ struct Level {
   [[nodiscard]] std::size_t middle() const { return (first + last) / 2; }
 };
 
-inline std::vector<Level> levels_of(std::span<const geometry::ParameterSample> samples,
-                                    const SCurveLimits& limits) {
+std::vector<Level> levels_of(std::span<const geometry::ParameterSample> samples,
+                             const SCurveLimits& limits) {
   std::vector<Level> levels;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const double v = allowed_velocity(samples[i].curvature, limits);
@@ -56,12 +35,12 @@ inline std::vector<Level> levels_of(std::span<const geometry::ParameterSample> s
   return levels;
 }
 
-inline bool is_extremum(const Level& before, const Level& level, const Level& after) {
+bool is_extremum(const Level& before, const Level& level, const Level& after) {
   return (level.velocity > before.velocity) == (level.velocity > after.velocity);
 }
 
 // Distance over which the speed changes from one to the other, without acceleration at both.
-inline double s_curve_distance(double v0, double v1, const SCurveLimits& limits) {
+double s_curve_distance(double v0, double v1, const SCurveLimits& limits) {
   const double change = std::abs(v1 - v0);
   const double a = limits.acceleration;
   const double j = limits.jerk;
@@ -70,7 +49,7 @@ inline double s_curve_distance(double v0, double v1, const SCurveLimits& limits)
 }
 
 // The greatest speed, up to `high`, that an S-curve from `low` reaches in `distance`.
-inline double reachable(double low, double high, double distance, const SCurveLimits& limits) {
+double reachable(double low, double high, double distance, const SCurveLimits& limits) {
   if (s_curve_distance(low, high, limits) <= distance) return high;
   double below = low;
   double above = high;
@@ -81,35 +60,31 @@ inline double reachable(double low, double high, double distance, const SCurveLi
   }
 }
 
-inline void lower(SCurveNode& node, const SCurveNode& neighbour, const SCurveLimits& limits) {
+void lower(SCurveNode& node, const SCurveNode& neighbour, const SCurveLimits& limits) {
   if (node.velocity <= neighbour.velocity) return;
   const double distance = std::abs(node.distance - neighbour.distance);
   node.velocity = reachable(neighbour.velocity, node.velocity, distance, limits);
 }
 
-}  // namespace s_curve
+}  // namespace
 
-// Both ends and the local extrema of the allowed speed (of an even stretch the sample in the
-// middle by number), lowered until an S-curve fits between each two neighbours. It starts and ends
-// at the speed allowed there, not at rest.
-inline std::vector<SCurveNode> s_curve_nodes(std::span<const geometry::ParameterSample> samples,
-                                             const SCurveLimits& limits) {
-  const std::vector<s_curve::Level> levels = s_curve::levels_of(samples, limits);
+std::vector<SCurveNode> s_curve_nodes(std::span<const geometry::ParameterSample> samples,
+                                      const SCurveLimits& limits) {
+  const std::vector<Level> levels = levels_of(samples, limits);
   if (levels.empty()) return {};
   std::vector<SCurveNode> nodes = {{samples.front().distance, levels.front().velocity}};
   for (std::size_t i = 1; i + 1 < levels.size(); ++i) {
-    if (!s_curve::is_extremum(levels[i - 1], levels[i], levels[i + 1])) continue;
+    if (!is_extremum(levels[i - 1], levels[i], levels[i + 1])) continue;
     nodes.push_back({samples[levels[i].middle()].distance, levels[i].velocity});
   }
   nodes.push_back({samples.back().distance, levels.back().velocity});
-  for (std::size_t i = 1; i < nodes.size(); ++i) s_curve::lower(nodes[i], nodes[i - 1], limits);
-  for (std::size_t i = nodes.size() - 1; i > 0; --i) s_curve::lower(nodes[i - 1], nodes[i], limits);
+  for (std::size_t i = 1; i < nodes.size(); ++i) lower(nodes[i], nodes[i - 1], limits);
+  for (std::size_t i = nodes.size() - 1; i > 0; --i) lower(nodes[i - 1], nodes[i], limits);
   return nodes;
 }
 
-// Seconds. Between two nodes the S-curve is stretched over the whole distance.
-inline double s_curve_time(std::span<const geometry::ParameterSample> samples,
-                           const SCurveLimits& limits) {
+double s_curve_time(std::span<const geometry::ParameterSample> samples,
+                    const SCurveLimits& limits) {
   const std::vector<SCurveNode> nodes = s_curve_nodes(samples, limits);
   double time = 0;
   for (std::size_t i = 1; i < nodes.size(); ++i) {

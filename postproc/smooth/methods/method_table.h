@@ -1,0 +1,70 @@
+// What each method makes of a path, in the figures that its paper prints: for `batten methods
+// --table`. Paths are planned by the planner of postproc/machine/planner, not by the model of a
+// control.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "geometry/basic/point.h"
+#include "geometry/basic/tolerance_kind.h"
+#include "geometry/path/bspline_curve.h"
+#include "postproc/machine/planner/feed_plan_path.h"
+#include "postproc/machine/planner/s_curve.h"
+
+namespace batten::postproc {
+
+struct TableSettings {
+  // Of polylines: the machine of Ozcan 2018.
+  KinematicPathLimits limits = ozcan_limits();
+  SCurveLimits s_curve;   // of curves: Naseath 2007
+  double guo_lambda = 0;  // of guo-literal, see geometry::GuoOptions
+
+  // 25 mm/s, 2500 and 3000 mm/s^2, 5000 mm/s^3 per axis, 1e4 mm/s^2 and 1e5 mm/s^3 along the path.
+  [[nodiscard]] static KinematicPathLimits ozcan_limits();
+};
+
+// A polyline, mm. Where it is closed (first point = last point within geometry::kSamePlace), it is
+// taken as a ring: methods of corners round its first point, too.
+struct PolylineCase {
+  std::vector<geometry::Point3> points;
+  bool ring = false;
+};
+
+struct PolylineRow {
+  std::string method;
+  geometry::ToleranceKind kind = geometry::ToleranceKind::kPath;
+  // Nothing else is known where the method makes no curve.
+  struct Figures {
+    double time = 0;                  // s, from rest to rest
+    std::optional<double> curvature;  // 1/mm, the greatest; nothing of the polyline
+    std::optional<double> deviation;  // mm, proved; nothing where it is above the tolerance
+    std::size_t pieces = 0;           // lines and cubics
+  };
+  std::optional<Figures> figures;
+};
+
+// The polyline as it is, each method in the strict reading of the tolerance (mm), and those that
+// differ there in the reading `band`. Seconds for some hundred points.
+//
+// Throws std::invalid_argument for fewer than two points, a tolerance that is not above 0, and
+// limits or a lambda that are not sound.
+[[nodiscard]] std::vector<PolylineRow> method_rows(const PolylineCase& given, double tolerance,
+                                                   const TableSettings& settings);
+
+struct CurveRow {
+  std::string method;
+  double curvature = 0;  // 1/mm, mean over kNaseathSteps equal parameter steps in each span
+  double greatest_curvature = 0;  // 1/mm, of these
+  double length = 0;              // mm
+  double time = 0;                // s, by the S-curve generator
+};
+
+// The curve as it is, and in a tube of that radius (mm): Naseath's smoother as the thesis has it,
+// repaired, and the curve of the least time. Throws as best_in_tube does.
+[[nodiscard]] std::vector<CurveRow> tube_rows(const geometry::BsplineCurve& curve, double radius,
+                                              const TableSettings& settings);
+
+}  // namespace batten::postproc
