@@ -98,8 +98,8 @@ class ProgramLister : EventLister {
       const bool unreadable = block.opacity == gcode::ParseStatus::kUnreadable;
       add_text((unreadable ? "unreadable " : "") + text_of_block(block));
     } else {
+      list_active_comments(block);  // a message comes before the motion of its block
       list_words(block, meaning);
-      list_active_comments(block);
     }
     forget_words(block);
   }

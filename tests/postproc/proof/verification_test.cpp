@@ -148,6 +148,10 @@ std::vector<WrongCase> wrong_cases() {
        "G21 G90\nG0 X0 Y0 Z0\n(MSG, two)\nG1 X10 F500\n(MSG, one)\nG1 X20\nM30\n", "event-changed",
        3, 3},
       {"LostMessage", messages, replaced(messages, "(MSG, two)\n", ""), "event-lost", 5, 0},
+      // It comes before the motion of its block.
+      {"MessageInTheBlockOfAMove", messages,
+       replaced(messages, "G1 X10 F500\n(MSG, two)", "G1 X10 F500 (MSG, two)"), "event-moved", 5,
+       4},
       {"SignalOneBlockLater", dense, replaced(dense, "M62 \nX5\n", "X5\nM62 \n"), "event-moved", 7,
        8},
       {"SmoothedUnderCutterCompensation", comp, replaced(comp, "X20 Y0.001\n", ""), "event-lost", 6,
