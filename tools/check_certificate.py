@@ -99,7 +99,7 @@ def arc_chords(piece, most_error):
         raise Refused("an arc so short that it may be taken for a full circle, or the other way round")
     radius, growth, rise = max(r0, r1), abs(r1 - r0) + 2, end[k] - start[k]
     step = min(0.3, math.sqrt(8 * float(most_error) / radius))
-    count = max(2, int(angle / step) + 1)
+    count = max(1, math.ceil(angle / step))
     first, points = math.atan2(ay, ax), [start]
     for n in range(1, count):
         part = n / count
@@ -153,7 +153,7 @@ def cubic_chords(piece, most_error):
     square = max(sum((control[n][k] - 2 * control[n + 1][k] + control[n + 2][k]) ** 2 for k in range(3))
                  for n in (0, 1))
     bend = root_up(round_up(Fraction(square)))
-    count = max(1, math.isqrt(int(bend / most_error)) + 1)
+    count = max(1, root_up(round_up(Fraction(3 * bend, 4) / most_error)))
     points = []
     for n in range(count + 1):
         t, s = n, count - n

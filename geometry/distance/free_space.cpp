@@ -36,7 +36,7 @@ Matching match_nearest(const ChordPolyline& a, const ChordPolyline& b) {
 }
 
 Matching match_nearest(const ChordPolyline& a, const ChordPolyline& b, const MatchedPair& from,
-                       const MatchedPair& to) {
+                       const MatchedPair& to, double tie) {
   const MatchedPair last{as_end(to.a), as_end(to.b)};
   MatchedPair here{as_end(from.a), as_end(from.b)};
   Matching matching;
@@ -59,7 +59,7 @@ Matching match_nearest(const ChordPolyline& a, const ChordPolyline& b, const Mat
     if (a_waits && b_waits) return matching;
     const double step_a = (next_a - point_at(b, to_a.b)).squaredNorm();
     const double step_b = (next_b - point_at(a, to_b.a)).squaredNorm();
-    here = !a_waits && (b_waits || step_a <= step_b) ? to_a : to_b;
+    here = !a_waits && (b_waits || step_a <= step_b + tie) ? to_a : to_b;
     matching.push_back(here);
   }
 }

@@ -30,9 +30,12 @@ using Matching = std::vector<MatchedPair>;
 // where the paths run beside each other; where one of them folds, it may be far from the best.
 [[nodiscard]] Matching match_nearest(const ChordPolyline& a, const ChordPolyline& b);
 
-// The part of such a matching between two pairs. Requires: `to` is not before `from` on either.
+// The part of such a matching between two pairs. Of two steps whose squares (mm^2) differ by less
+// than |tie| it takes that on `a` where tie > 0, that on `b` where tie < 0. Requires: `to` is not
+// before `from` on either.
 [[nodiscard]] Matching match_nearest(const ChordPolyline& a, const ChordPolyline& b,
-                                     const MatchedPair& from, const MatchedPair& to);
+                                     const MatchedPair& from, const MatchedPair& to,
+                                     double tie = 0);
 
 // Is it a matching? The part of the certificate that asks no distance.
 [[nodiscard]] bool goes_forward(const Matching& matching, const ChordPolyline& a,

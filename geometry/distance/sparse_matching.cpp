@@ -1,7 +1,9 @@
 #include "geometry/distance/sparse_matching.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <variant>
 
 #include "geometry/distance/chord_polyline.h"
 #include "geometry/distance/free_space.h"
@@ -11,13 +13,17 @@ namespace {
 
 constexpr double kBillion = 1e9;
 
-// Of the tolerance: errors of the chords of arcs and curves, the finer ones where the bound is that
-// near to the tolerance, and how far rounding may move a place along its piece.
-constexpr double kSparseShares[] = {1e-3, 2e-5};
+// Of the tolerance: errors of the chords of arcs and curves, as tools/check_certificate.py tries
+// them (CHORD_SHARES), and how far rounding may move a place along its piece.
+constexpr double kSparseShares[] = {1.0 / 300, 1.0 / 5000, 1.0 / 50000};
 constexpr double kRoundingShare = 1e-2;
 
-// Left free below the tolerance, as a share of it: above the rounding of a distance.
-constexpr double kMargin = 1e-6;
+// mm: the checker counts in billionths, and a step may be as much longer or shorter there.
+constexpr double kCheckerRounding = 1e-8;
+
+// Left free below the tolerance, as a share of it: the checker's bounds on the chords of arcs are
+// greater than these by a fiftieth of their error.
+constexpr double kMargin = 1e-4;
 
 PathPlace rounded(std::size_t piece, double t, double step) {
   double billionths = std::round(t / step) * step * kBillion;
@@ -26,14 +32,53 @@ PathPlace rounded(std::size_t piece, double t, double step) {
   return {piece, static_cast<std::uint32_t>(billionths)};
 }
 
+// Into how many chords tools/check_certificate.py cuts the piece (arc_chords, cubic_chords there).
+std::size_t checked_count(const PathPiece& piece, double max_error) {
+  constexpr double kGreatestStep = 0.3;  // radians
+  double count = 1;
+  if (const auto* arc = std::get_if<Arc>(&piece)) {
+    const auto radius_at = [arc](const Point3& p) {
+      const Vector3 from = p - arc->center;
+      return (from - from.dot(arc->axis) * arc->axis).norm();
+    };
+    const double radius = std::max(radius_at(arc->start), radius_at(arc->end));
+    const double step = std::min(kGreatestStep, std::sqrt(8 * max_error / radius));
+    count = std::ceil(std::abs(arc->sweep) / step);
+  } else if (const auto* cubic = std::get_if<CubicBezier>(&piece)) {
+    const auto& c = cubic->control;
+    const double bend = std::max((c[0] - 2 * c[1] + c[2]).norm(), (c[1] - 2 * c[2] + c[3]).norm());
+    count = std::ceil(std::sqrt(0.75 * bend / max_error));
+  }
+  return static_cast<std::size_t>(std::max(1.0, count));
+}
+
+// The path on the checker's chords, each with its error.
+ChordPolyline checked_chords(std::span<const PathPiece> path, double max_error) {
+  ChordPolyline chords;
+  chords.points.push_back(start_point(path.front()));
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    const PathPiece& piece = path[i];
+    const std::size_t count = checked_count(piece, max_error);
+    const double error =
+        second_derivative_bound(piece) / (8.0 * static_cast<double>(count * count));
+    for (std::size_t k = 1; k <= count; ++k) {
+      const double t = static_cast<double>(k) / static_cast<double>(count);
+      chords.points.push_back(k == count ? end_point(piece) : geometry::point_at(piece, t));
+      chords.errors.push_back(error);
+      chords.pieces.push_back(i);
+    }
+  }
+  return chords;
+}
+
 class Thinning {
  public:
   Thinning(std::span<const PathPiece> a, std::span<const PathPiece> b, double tolerance,
            double chord_share)
       : old_(a),
         new_(b),
-        a_(cut_into_chords(a, chord_share * tolerance)),
-        b_(cut_into_chords(b, chord_share * tolerance)),
+        a_(checked_chords(a, chord_share * tolerance)),
+        b_(checked_chords(b, chord_share * tolerance)),
         tolerance_(tolerance) {}
 
   std::optional<std::vector<SparsePair>> run(const std::vector<PlacePair>& pairs) {
@@ -60,8 +105,11 @@ class Thinning {
   }
 
   [[nodiscard]] bool keeps(const SparsePair& from, const SparsePair& to) const {
-    const Matching matching = match_nearest(a_, b_, on_chords(from), on_chords(to));
-    return measure(matching, a_, b_, 0).at_most <= tolerance_ * (1 - kMargin);
+    return std::ranges::all_of(std::array{1.0, -1.0}, [&](double either) {
+      const double tie = either * kCheckerRounding * tolerance_;
+      const Matching matching = match_nearest(a_, b_, on_chords(from), on_chords(to), tie);
+      return measure(matching, a_, b_, 0).at_most <= tolerance_ * (1 - kMargin);
+    });
   }
 
   [[nodiscard]] SparsePair sparse(const PlacePair& pair, bool coarse) const {

@@ -31,6 +31,9 @@ struct SparsePair {
 // rule would leave the tolerance. The ends of the paths are not among them. Numbers are rounded to
 // as few digits as the proof bears. Nothing where no choice of them proves it.
 //
+// The rule is followed on chords as the checker cuts them (checked_chords), for each of its finenesses
+// until one proves it; where two steps are equal but for rounding, it may take either.
+//
 // Requires: `matching` is the one of match_paths for these paths and this tolerance or a greater
 // one, and proved for that.
 [[nodiscard]] std::optional<std::vector<SparsePair>> thin_matching(std::span<const PathPiece> a,

@@ -36,8 +36,6 @@ std::vector<std::string_view> lines_of(std::string_view text) {
   return lines;
 }
 
-constexpr double kSpared = 0.99;
-
 // One of the two programs by lines, which count from 0 here.
 class LinedProgram {
  public:
@@ -219,12 +217,8 @@ class CertificateWriter {
     line_begin_ = text_.size();
     for (std::size_t k = 0; k < parts->size(); ++k) {
       const MatchedPart& part = (*parts)[k];
-      // With a little to spare first: the checker counts the errors of its own chords.
-      auto pairs =
-          geometry::thin_matching(part.before, part.after, part.matching, kSpared * tolerance_);
-      if (!pairs) {
-        pairs = geometry::thin_matching(part.before, part.after, part.matching, tolerance_);
-      }
+      const auto pairs =
+          geometry::thin_matching(part.before, part.after, part.matching, tolerance_);
       if (!pairs) return false;
       if (k > 0) write_word("/");
       write_pairs(*pairs);

@@ -15,7 +15,7 @@ all. Damage that is harmful by how it was made has to be rejected:
     the path is left by more than 1.5 tolerances;
   - a certificate of a larger tolerance.
 
-A program with expressions of constants is certified, and refused with a parameter set in a run.
+Programs of right angles that became curves are certified. A program with expressions of constants is certified, and refused with a parameter set in a run.
 
 Other damage may be harmless and is counted apart; where it is accepted, the readers of the campaign
 (oracle.py) have to find it harmless. Prints a line for each kind, and what was accepted though it is
@@ -417,6 +417,37 @@ def constants(batten, folder):
     return [f"constants: {case}: {found[case]}" for case in expected if found[case] != expected[case]]
 
 
+def corners(batten, folder):
+    """Findings about programs of right angles that became curves: symmetric, so that at every corner two steps
+    of the rule are equal but for rounding."""
+    old, new, proof = (folder / name for name in ("old.ngc", "new.ngc", "new.cert"))
+    findings = []
+    for seed, control in [(73, "siemens"), (230, "linuxcnc"), (283, "linuxcnc"), (293, "siemens"), (373, "linuxcnc")]:
+        chance = random.Random(seed)
+        x, y, lines = 0.0, 0.0, ["G21 G17 G90 G94 G64", "G0 X0 Y0 Z5", "G1 Z-1 F300"]
+        for k in range(chance.choice([4, 6, 10])):
+            way = round(chance.choice([0.5, 2, 8]) * chance.uniform(0.5, 1.5), 3) * chance.choice([1, 1, -1])
+            feed = " F1000" if k == 0 else ""
+            if chance.random() < 0.3:
+                x, y = round(x + way, 3), round(y + way * chance.uniform(-1, 1), 3)
+                lines.append(f"G1 X{x:g} Y{y:g}{feed}")
+            elif k % 2 == 0:
+                x = round(x + way, 3)
+                lines.append(f"G1 X{x:g}{feed}")
+            else:
+                y = round(y + way, 3)
+                lines.append(f"G1 Y{y:g}{feed}")
+        old.write_text("\n".join([*lines, "G0 Z5", "M2"]) + "\n")
+        subprocess.run([batten, "smooth", old, "-o", new, "--certificate", proof, "--force", "--quiet", "--target", control,
+                        "--tolerance", str(TOLERANCE), "--output", "curves"], check=True, capture_output=True)
+        with contextlib.redirect_stdout(io.StringIO()) as said:
+            code = check_certificate.main([str(old), str(new), str(proof), "--control", control,
+                                           "--tolerance", str(TOLERANCE)])
+        if code or new.read_text() == old.read_text():
+            findings.append(f"corners: {seed} {control}: {said.getvalue() or 'not rewritten'}")
+    return findings
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("batten", type=pathlib.Path)
@@ -426,6 +457,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         campaign = Campaign(options.batten.resolve(), pathlib.Path(folder))
         campaign.wrong += constants(options.batten.resolve(), pathlib.Path(folder))
+        campaign.wrong += corners(options.batten.resolve(), pathlib.Path(folder))
         done = campaign.run(options.count, options.seed)
     for kind, (harmful, accepted, others, others_accepted) in sorted(campaign.counts.items()):
         print(f"{kind}: {harmful} harmful, {accepted} of them accepted; {others} others, {others_accepted} accepted")
