@@ -363,7 +363,7 @@ def read_words(text, siemens):
             line.words.append((m.group(4), m.group(5)) if m.group(4) else ("name", m.group(3)))
     if line.words and line.words[0][0] == "N":
         line.number = True
-        line.words.pop(0)
+        line.known = line.words.pop(0)[1].isdigit() and line.known
         line.silent = line.known and not line.words
     return line
 

@@ -30,6 +30,7 @@ struct TableCase {
   std::string name;
   std::vector<double> tolerances;  // mm
   std::variant<PolylineCase, geometry::BsplineCurve> path;
+  std::optional<double> first_step;  // of a curve that becomes lines
 };
 
 // What is wrong with the file: for the user.
@@ -68,7 +69,7 @@ std::vector<Point3> points_in(const nlohmann::json& value, std::string_view what
 
 TableCase case_in(const std::string& name, const nlohmann::json& given) {
   const auto what = [&](std::string_view key) { return fmt::format("case '{}': {}", name, key); };
-  TableCase found{name, {}, PolylineCase{}};
+  TableCase found{name, {}, PolylineCase{}, std::nullopt};
   if (given.contains("tolerance")) {
     found.tolerances = numbers_in(given["tolerance"], what("tolerance"));
   }
@@ -86,6 +87,9 @@ TableCase case_in(const std::string& name, const nlohmann::json& given) {
   }
   if (!given.contains("control_points") || !given.contains("distinct_knots")) {
     throw TableError(what("expected points, or control_points and distinct_knots"));
+  }
+  if (given.contains("first_step")) {
+    found.first_step = number_in(given["first_step"], what("first_step"));
   }
   try {
     found.path =
@@ -228,12 +232,30 @@ void add_curve(const geometry::BsplineCurve& curve, double radius, const TableSe
   }
 }
 
+void add_lines(const geometry::BsplineCurve& curve, double tolerance, double first_step,
+               CaseTable& table) {
+  table.text +=
+      fmt::format("  {:<22} {:>7} {:>13} {:>13}\n", fmt::format("tolerance {} mm", tolerance),
+                  "lines", "length, mm", "deviation, mm");
+  for (const LinesRow& row : line_rows(curve, tolerance, first_step)) {
+    table.text += fmt::format("  {:<22} {:>7} {:>13.6f} {:>13.6f}\n", row.method, row.lines,
+                              row.length, row.deviation);
+    table.rows.push_back({{"method", row.method},
+                          {"tolerance_mm", tolerance},
+                          {"lines", row.lines},
+                          {"length_mm", row.length},
+                          {"deviation_mm", row.deviation}});
+  }
+}
+
 CaseTable table_of(const TableCase& given, const TableSettings& settings) {
   CaseTable table;
   table.text = given.name + "\n";
   for (const double tolerance : given.tolerances) {
     if (const auto* polyline = std::get_if<PolylineCase>(&given.path)) {
       add_polyline(*polyline, tolerance, settings, table);
+    } else if (given.first_step) {
+      add_lines(std::get<geometry::BsplineCurve>(given.path), tolerance, *given.first_step, table);
     } else {
       add_curve(std::get<geometry::BsplineCurve>(given.path), tolerance, settings, table);
     }

@@ -214,6 +214,13 @@ class Pair:
         lines = self.with_line(n, re.sub(rf"(?<![A-Z]){axes[0]}", axes[1], self.lines[n]))
         return "said twice", True, lines, self.scrambled(self.certificate)
 
+    def damage_block_number(self):
+        n = self.chance.choice(self.moves)
+        if self.source.klartext or self.lines[n].startswith("N"):
+            return None
+        return "block number", True, self.with_line(n, f"N{self.chance.choice(['-1', '1.5', '+2'])} {self.lines[n]}"), \
+            self.certificate
+
     def damage_mode_line(self):
         n = self.chance.choice(self.moves)
         word = self.chance.choice(["L M8", "CYCL DEF 7.0", "LBL 1", "L FMAX"] if self.source.klartext else

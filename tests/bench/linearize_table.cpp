@@ -1,7 +1,6 @@
-// Prints how many lines the ways of laying them along a curve need:
-//   linearize_table [FILE ..]
-// First two parabolas at four tolerances: ilca, blca, chord, minlink (docs/algorithms/hamdan.md).
-// Then for each program, smoothed within 0.01 mm for linuxcnc with --method fair --output lines
+// Prints how many lines two ways of laying them along a curve need:
+//   linearize_table FILE ..
+// For each program, smoothed within 0.01 mm for linuxcnc with --method fair --output lines
 // --prefer size: lines in the runs that both ways rewrite, laid as chords and as minlink, what is
 // saved, and whether both texts are proved.
 #include <fmt/core.h>
@@ -12,42 +11,12 @@
 
 #include "gcode/controls/built_in.h"
 #include "gcode/text/source_text.h"
-#include "geometry/chords/ilca.h"
-#include "geometry/chords/linearize.h"
-#include "geometry/chords/min_link.h"
 #include "postproc/stream/pipeline.h"
-#include "tests/support/parabolas.h"
 
 namespace {
 
 using namespace batten;
 using postproc::Linearize;
-
-// 89 links need all but 2e-4 of the tolerance in one case: with fewer gates they are 90.
-constexpr int kFineGates = 96;
-
-void print_counts(const char* name, const geometry::BsplineCurve& curve, double first_step,
-                  double tolerance) {
-  const double from = curve.first();
-  const double to = curve.last();
-  const auto equal = geometry::ilca(curve, from, to, {tolerance, first_step}).value();
-  const auto tangent = geometry::blca(curve, from, to, tolerance);
-  const auto chords = geometry::chord_vertices(curve, from, to, {.max_deviation = tolerance});
-  const auto links = geometry::min_link_vertices(
-      curve, from, to, {.tolerance = tolerance, .gates_per_link = kFineGates});
-  fmt::print("{:<6} {:>9} {:>6} {:>6} {:>6} {:>8}\n", name, fmt::format("{:g}", tolerance),
-             equal.parameters.size() - 1, tangent.parameters.size() - 1, chords.size() - 1,
-             links.size() - 1);
-}
-
-void print_parabolas() {
-  fmt::print("{:<6} {:>9} {:>6} {:>6} {:>6} {:>8}\n", "curve", "T mm", "ilca", "blca", "chord",
-             "minlink");
-  for (const double tolerance : {0.05, 0.005, 0.0005, 0.00005}) {
-    print_counts("Ex I", geometry::kFlatParabola.curve(), 3, tolerance);
-    print_counts("Ex II", geometry::kSteepParabola.curve(), 2, 0.9 * tolerance);
-  }
-}
 
 postproc::SmoothResult smoothed(const gcode::SourceText& source, Linearize linearize) {
   postproc::SmoothOptions options;
@@ -95,9 +64,7 @@ void print_program(const std::string& file) {
 }  // namespace
 
 int main(int argument_count, char** argument_words) {
-  print_parabolas();
-  if (argument_count < 2) return 0;
-  fmt::print("\n{:<44} {:>7} {:>7} {:>7} {:>8} {:>8} {:>8}\n", "program", "before", "chord",
+  fmt::print("{:<44} {:>7} {:>7} {:>7} {:>8} {:>8} {:>8}\n", "program", "before", "chord",
              "minlink", "saved", "bytes", "bytes");
   for (int i = 1; i < argument_count; ++i) print_program(argument_words[i]);
   return 0;

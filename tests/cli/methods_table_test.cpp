@@ -84,6 +84,19 @@ TEST_F(MethodsTable, SmoothsCurvesInATube) {
             found.at("naseath").at("s_curve_time_s"));
 }
 
+// Hamdan 2005, example I, with the figures of docs/algorithms/hamdan.md.
+TEST_F(MethodsTable, LaysLinesAlongCurves) {
+  const auto found = rows(
+      R"({"parabola": {"distinct_knots": [2, 11], "first_step": 3, "tolerance": 0.05, "control_points":
+          [[2, 1.838], [5, 4.322], [8, 5.645], [11, 5.807]]}})");
+  EXPECT_EQ(found.at("ilca").at("lines"), 5);
+  EXPECT_EQ(found.at("blca").at("lines"), 8);
+  EXPECT_EQ(found.at("chord").at("lines"), 4);
+  EXPECT_EQ(found.at("minlink").at("lines"), 4);
+  EXPECT_NEAR(found.at("ilca").at("length_mm"), 10.000914, 1e-6);
+  EXPECT_NEAR(found.at("ilca").at("deviation_mm"), 0.034533, 1e-4);
+}
+
 TEST_F(MethodsTable, SaysWhatIsWrongWithTheFile) {
   expect_exit(table("{"), 2, {"case.json", "line 1"});
   expect_exit(table(R"({"a": {"points": [[0, 0, 0, 0]]}})"), 2, {"case 'a'", "[x, y, z] in mm"});

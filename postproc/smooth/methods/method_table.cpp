@@ -6,6 +6,9 @@
 #include <utility>
 #include <variant>
 
+#include "geometry/chords/ilca.h"
+#include "geometry/chords/linearize.h"
+#include "geometry/chords/min_link.h"
 #include "geometry/distance/band_comparison.h"
 #include "geometry/distance/path_distance.h"
 #include "geometry/fitting/corners/corner_blend.h"
@@ -116,6 +119,7 @@ std::vector<PolylineRow> method_rows(const PolylineCase& given, double tolerance
       if (choice.value == Method::kBest || choice.value == Method::kNone) continue;
       // The others, and those literal ones, give the same curve in both readings.
       const bool differs = choice.value == Method::kGuo || choice.value == Method::kOzcan ||
+                           choice.value == Method::kOzcanUsual ||
                            choice.value == Method::kTimeOptimal;
       if (kind == ToleranceKind::kBand && !differs) continue;
       CurveRequest request;
@@ -137,6 +141,42 @@ std::vector<PolylineRow> method_rows(const PolylineCase& given, double tolerance
       rows.push_back(std::move(row));
     }
   }
+  return rows;
+}
+
+std::vector<LinesRow> line_rows(const BsplineCurve& curve, double tolerance, double first_step) {
+  // The least number of links is found where they are held against the curve this often.
+  constexpr int kFineGates = 96;
+  geometry::require_positive_tolerance(tolerance, "line_rows");
+  const double from = curve.first();
+  const double to = curve.last();
+  const Path beziers = geometry::beziers_of(curve);
+  const auto on_curve = [&](std::span<const double> parameters) {
+    std::vector<Point3> points;
+    points.reserve(parameters.size());
+    for (const double u : parameters) points.push_back(curve.point_at(u));
+    return points;
+  };
+  const auto row = [&](std::string method, std::span<const Point3> points) {
+    const Path lines = geometry::path_through(points);
+    double length = 0;
+    for (const geometry::PathPiece& line : lines) length += geometry::length_of(line);
+    constexpr double kRoom = 1.03;
+    const auto found = geometry::compare_paths(beziers, lines, kRoom * tolerance);
+    return LinesRow{std::move(method), lines.size(), length, found.bounds.at_most};
+  };
+  std::vector<LinesRow> rows;
+  const auto equal = geometry::ilca(curve, from, to, {tolerance, first_step});
+  rows.push_back(equal ? row("ilca", on_curve(equal->parameters)) : LinesRow{"ilca"});
+  rows.push_back(row("blca", on_curve(geometry::blca(curve, from, to, tolerance).parameters)));
+  rows.push_back(row(
+      "chord", on_curve(geometry::chord_vertices(curve, from, to, {.max_deviation = tolerance}))));
+  std::vector<Point3> links;
+  for (const geometry::LinkVertex& vertex : geometry::min_link_vertices(
+           curve, from, to, {.tolerance = tolerance, .gates_per_link = kFineGates})) {
+    links.push_back(vertex.place);
+  }
+  rows.push_back(row("minlink", links));
   return rows;
 }
 

@@ -67,4 +67,17 @@ struct CurveRow {
 [[nodiscard]] std::vector<CurveRow> tube_rows(const geometry::BsplineCurve& curve, double radius,
                                               const TableSettings& settings);
 
+struct LinesRow {
+  std::string method;     // as of --linearize
+  std::size_t lines = 0;  // 0: none were found within a bounded effort
+  double length = 0;      // mm, of the lines
+  double deviation = 0;   // mm, the greatest distance of the curve from them, a proved bound
+};
+
+// The curve as lines by each way of laying them within a tolerance (mm). `first_step`: of the
+// parameter, with which ilca begins; 0: one step. Throws std::invalid_argument for a tolerance that
+// is not above 0.
+[[nodiscard]] std::vector<LinesRow> line_rows(const geometry::BsplineCurve& curve, double tolerance,
+                                              double first_step);
+
 }  // namespace batten::postproc
