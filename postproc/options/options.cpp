@@ -50,8 +50,8 @@ constexpr Choice<Method> kMethods[] = {
      "as the thesis has it, for comparison: may make a path worse", false},
     {Method::kGuoLiteral, "guo-literal",
      "as the paper has it, for comparison: half the tolerance or less is used", false},
-    {Method::kOzcanUsual, "ozcan-usual",
-     "as the paper's corner without its search, for comparison", false},
+    {Method::kOzcanUsual, "ozcan-usual", "as the paper's corner without its search, for comparison",
+     false},
     {Method::kNone, "none", "nothing is rewritten: checks and reports only"},
 };
 
@@ -185,6 +185,11 @@ std::span<const Choice<Linearize>> linearizations() { return kLinearizations; }
 std::span<const Choice<ToleranceKind>> tolerance_kinds() { return kToleranceKinds; }
 std::span<const Choice<Side>> sides() { return kSides; }
 std::span<const Choice<SourceKind>> sources() { return kSources; }
+
+bool is_of_corners(Method method) {
+  return method == Method::kGuo || method == Method::kGuoLiteral || method == Method::kOzcan ||
+         method == Method::kOzcanUsual || method == Method::kTimeOptimal;
+}
 
 bool may_have_arcs(Form form) {
   switch (form) {

@@ -62,6 +62,10 @@ struct Choice {
 [[nodiscard]] std::string_view name_of(geometry::Side side);
 [[nodiscard]] std::string_view name_of(gcode::Units units);  // "mm", "inch", "unknown"
 
+// Whether the method leaves the lines and puts a curve at each corner by itself: guo, ozcan,
+// racing.
+[[nodiscard]] bool is_of_corners(Method method);
+
 // Whether there may be arcs in runs of this form: the ends of arcs have decimals of their own.
 [[nodiscard]] bool may_have_arcs(Form form);
 

@@ -361,6 +361,7 @@ bool is_allowed(std::string_view reason, const SmoothOptions& options) {
 
 GroupingOptions grouping_of(const SmoothOptions& options) {
   GroupingOptions grouping;
+  if (is_of_corners(options.method)) grouping.min_motions = 2;  // a corner alone
   grouping.tolerance_mm = options.tolerance_mm;
   for (const std::string& id : options.allowed) grouping.allowed.push_back(id);
   return grouping;

@@ -86,11 +86,6 @@ double greatest_curvature_of(const Path& path) {
   return greatest;
 }
 
-bool is_of_corners(Method method) {
-  return method == Method::kGuo || method == Method::kGuoLiteral || method == Method::kOzcan ||
-         method == Method::kOzcanUsual || method == Method::kTimeOptimal;
-}
-
 // Some methods use the tolerance up to its last digit, and the proof needs room.
 std::optional<double> proved_deviation(const Path& old_path, const Path& new_path,
                                        ToleranceKind kind, double tolerance) {

@@ -65,6 +65,11 @@ struct MethodOnProgram {
 
 void PrintTo(const MethodOnProgram& m, std::ostream* out) { *out << m.name; }
 
+// Two lines.
+std::string corner_program() {
+  return "G21 G90 G17 G94\nG0 X0 Y0 Z0\nG1 X13 Y13 F3000\nX26 Y0\nG0 Z5\nM2\n";
+}
+
 class MethodEndToEnd : public testing::TestWithParam<MethodOnProgram> {};
 
 TEST_P(MethodEndToEnd, IsWrittenAndProvedWithinTheTolerance) {
@@ -91,6 +96,8 @@ INSTANTIATE_TEST_SUITE_P(
         MethodOnProgram{Method::kGuo, "Guo", star_program, "grbl"},
         MethodOnProgram{Method::kGuoLiteral, "GuoLiteral", star_program, "grbl", Form::kArcs},
         MethodOnProgram{Method::kOzcan, "Ozcan", star_program, "grbl"},
+        MethodOnProgram{Method::kOzcanUsual, "OzcanUsual", star_program, "grbl"},
+        MethodOnProgram{Method::kGuo, "GuoOneCorner", corner_program, "grbl"},
         MethodOnProgram{Method::kTimeOptimal, "Racing", star_program, "grbl"}),
     [](const auto& test) { return test.param.name; });
 
