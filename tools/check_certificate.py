@@ -814,7 +814,7 @@ class Checker:
             self.refuse(f"at the end {field} is {getattr(self.new, field)}, and was {getattr(self.old, field)}")
 
     def copy_to(self, old_end, new_end):
-        if old_end - self.i != new_end - self.j or old_end < self.i:
+        if old_end - self.i != new_end - self.j or not self.i <= old_end <= len(self.old_lines) or new_end > len(self.new_lines):
             self.refuse("lines between two runs are not as many in both programs")
         while self.i < old_end:
             text = self.old_lines[self.i]

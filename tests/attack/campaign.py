@@ -187,7 +187,10 @@ def piece(batten, limits, keep, seed, first, count, targets, damages):
         tries = Tries(batten, limits, pathlib.Path(folder), keep)
         for index in range(first, first + count):
             here = (index + 1) * damages[0] // damages[1] - index * damages[0] // damages[1]
-            tries.program(seed, index, targets, here)
+            try:
+                tries.program(seed, index, targets, here)
+            except Exception as error:  # of a reader or of the checker: a finding, and no end of the attack
+                tries.findings.append(f"{seed}-{index}: {error!r}")
     return first, dict(tries.counts), tries.findings
 
 

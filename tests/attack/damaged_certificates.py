@@ -214,6 +214,9 @@ class Pair:
         lines = self.with_line(n, re.sub(rf"(?<![A-Z]){axes[0]}", axes[1], self.lines[n]))
         return "said twice", True, lines, self.scrambled(self.certificate)
 
+    def damage_lost_end(self):
+        return "lost end", True, self.lines[:self.chance.randrange(1, len(self.lines))], self.certificate
+
     def damage_block_number(self):
         n = self.chance.choice(self.moves)
         if self.source.klartext or self.lines[n].startswith("N"):
