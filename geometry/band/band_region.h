@@ -30,8 +30,8 @@ struct RegionCheck {
 // one.
 //
 // Nothing where the paths do not lie in one plane across an axis, or one of them has no length.
-// Throws std::invalid_argument when the tolerance is not a positive number. Cost: about a
-// millisecond for each chord of the old path.
+// Throws std::invalid_argument when the tolerance is not a positive number. Cost: that of
+// band_outline (geometry/band/tolerance_band.h).
 [[nodiscard]] std::optional<RegionCheck> check_in_region(std::span<const PathPiece> before,
                                                          std::span<const PathPiece> after,
                                                          double tolerance);

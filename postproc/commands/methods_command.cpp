@@ -187,24 +187,22 @@ void add_polyline(const PolylineCase& path, double tolerance, const TableSetting
   for (const PolylineRow& row : method_rows(path, tolerance, settings)) {
     const bool band = row.kind == ToleranceKind::kBand;
     const std::string name = row.method + (band ? ", band" : "");
-    if (!row.figures) {
+    Json json = {{"method", row.method},
+                 {"tolerance_kind", band ? "band" : "path"},
+                 {"tolerance_mm", tolerance},
+                 {"time_s", nullptr}};
+    if (row.figures) {
+      const auto& [time, curvature, deviation, pieces] = *row.figures;
+      table.text += fmt::format("  {:<22} {:>9.4f} {:>13} {:>13} {:>7}\n", name, time,
+                                or_dash(curvature, 3), or_dash(deviation, 4), pieces);
+      json["time_s"] = time;
+      json["greatest_curvature_per_mm"] = or_null(curvature);
+      json["deviation_mm"] = or_null(deviation);
+      json["pieces"] = pieces;
+    } else {
       table.text += fmt::format("  {:<22} no curve\n", name);
-      table.rows.push_back({{"method", row.method},
-                            {"tolerance_kind", band ? "band" : "path"},
-                            {"tolerance_mm", tolerance},
-                            {"time_s", nullptr}});
-      continue;
     }
-    const auto& [time, curvature, deviation, pieces] = *row.figures;
-    table.text += fmt::format("  {:<22} {:>9.4f} {:>13} {:>13} {:>7}\n", name, time,
-                              or_dash(curvature, 3), or_dash(deviation, 4), pieces);
-    table.rows.push_back({{"method", row.method},
-                          {"tolerance_kind", band ? "band" : "path"},
-                          {"tolerance_mm", tolerance},
-                          {"time_s", time},
-                          {"greatest_curvature_per_mm", or_null(curvature)},
-                          {"deviation_mm", or_null(deviation)},
-                          {"pieces", pieces}});
+    table.rows.push_back(std::move(json));
   }
 }
 

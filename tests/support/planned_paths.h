@@ -14,18 +14,14 @@
 #include "geometry/fitting/corners/ozcan_corner.h"
 #include "geometry/path/path.h"
 #include "postproc/machine/planner/feed_plan.h"
+#include "postproc/smooth/methods/method_table.h"
 #include "tests/support/sampled_motion.h"
 
 namespace batten::postproc {
 
 // The machine of the corner A(0,0) C(13,13) B(26,0): F 25 mm/s, A 2500 and 3000 mm/s^2, J 5000
 // mm/s^3 per axis, 1e4 and 1e5 along the path.
-inline KinematicPathLimits corner_limits() {
-  KinematicPathLimits limits{geometry::KinematicLimits{}};
-  limits.tangential_acceleration = 1e4;
-  limits.tangential_jerk = 1e5;
-  return limits;
-}
+inline KinematicPathLimits corner_limits() { return TableSettings::ozcan_limits(); }
 
 inline geometry::Corner wide_corner() { return {{0, 0, 0}, {13, 13, 0}, {26, 0, 0}}; }
 

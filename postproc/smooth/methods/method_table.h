@@ -26,8 +26,8 @@ struct TableSettings {
   [[nodiscard]] static KinematicPathLimits ozcan_limits();
 };
 
-// A polyline, mm. Where it is closed (first point = last point within geometry::kSamePlace), it is
-// taken as a ring: methods of corners round its first point, too.
+// A polyline, mm. Of a ring, whose last point is its first one, methods of corners round that
+// point, too.
 struct PolylineCase {
   std::vector<geometry::Point3> points;
   bool ring = false;

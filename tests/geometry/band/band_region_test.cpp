@@ -99,6 +99,16 @@ TEST(BandRegion, TakesArcsAndCurvesForChords) {
   EXPECT_FALSE(holds(arc, path_through(points)));
 }
 
+// All but as far off as is allowed, outside, where both are cut into chords.
+TEST(BandRegion, HasRoomForTheChordsOfBoth) {
+  const auto arc = [](double r) {
+    return Path{Arc{{r, 0, 0}, {0, r, 0}, {0, 0, 0}, Vector3::UnitZ(), std::numbers::pi / 2}};
+  };
+  for (const double off : {-0.995 * kTolerance, 0.995 * kTolerance}) {
+    EXPECT_TRUE(holds_both_ways(arc(10), arc(10 + off))) << off;
+  }
+}
+
 // --- what is wrong -------------------------------------------------------------------------------
 
 TEST(BandRegion, SaysWhereAPathLeavesIt) {

@@ -64,6 +64,19 @@ TEST(PlanFeed, PassesOverTheRestOfALineThatIsOfRounding) {
   }
 }
 
+// A path of such lines alone is none of rounding: each corner is a stop.
+TEST(PlanFeed, PassesOverNoneOfManyShortLines) {
+  Path stairs;
+  geometry::Point3 from = geometry::Point3::Zero();
+  for (int i = 0; i < 40; ++i) {
+    geometry::Point3 to = from;
+    to[i % 2] += 2e-5;
+    stairs.emplace_back(Line{from, to});
+    from = to;
+  }
+  EXPECT_EQ(plan_feed(stairs, corner_limits()).stops, 39);
+}
+
 TEST(PlanFeed, HasNoNodesWithoutAWay) {
   EXPECT_TRUE(plan_feed(Path{}, corner_limits()).nodes.empty());
   EXPECT_EQ(planned_time(Path{Line{{1, 2, 3}, {1, 2, 3}}}, corner_limits()), 0);
