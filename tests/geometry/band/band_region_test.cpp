@@ -99,13 +99,18 @@ TEST(BandRegion, TakesArcsAndCurvesForChords) {
   EXPECT_FALSE(holds(arc, path_through(points)));
 }
 
-// All but as far off as is allowed, outside, where both are cut into chords.
+// All but as far off as is allowed, where both are cut into chords, at other angles.
 TEST(BandRegion, HasRoomForTheChordsOfBoth) {
-  const auto arc = [](double r) {
-    return Path{Arc{{r, 0, 0}, {0, r, 0}, {0, 0, 0}, Vector3::UnitZ(), std::numbers::pi / 2}};
+  const auto at = [](double r, double angle) {
+    return Point3(r * std::cos(angle), r * std::sin(angle), 0);
+  };
+  const auto arc = [&](double r, double from, double to) {
+    return Arc{at(r, from), at(r, to), Point3::Zero(), Vector3::UnitZ(), to - from};
   };
   for (const double off : {-0.995 * kTolerance, 0.995 * kTolerance}) {
-    EXPECT_TRUE(holds_both_ways(arc(10), arc(10 + off))) << off;
+    const Path before = {arc(10, 0, 1.5)};
+    const Path after = {arc(10 + off, 0, 0.61), arc(10 + off, 0.61, 1.5)};
+    EXPECT_TRUE(holds_both_ways(before, after)) << off;
   }
 }
 
