@@ -146,9 +146,9 @@ void Writer::line_to(const Point3& end, double feed) {
   end_block();
 }
 
-bool Writer::arc_to(const geometry::Arc& arc, double feed) {
+std::optional<geometry::Arc> Writer::arc_to(const geometry::Arc& arc, double feed) {
   const std::optional<PrintedArc> printed = print_arc(arc);
-  if (!printed) return false;
+  if (!printed) return std::nullopt;
   add_plane(printed->plane.plane);
   add_motion(printed->arc.sweep > 0 ? MotionMode::kCounterclockwise : MotionMode::kClockwise);
   add_coordinates(printed->end);
@@ -157,7 +157,7 @@ bool Writer::arc_to(const geometry::Arc& arc, double feed) {
   block_.radius = printed->radius;
   add_feed(feed);
   end_block();
-  return true;
+  return printed->arc;
 }
 
 void Writer::copy_line(std::string_view text) {

@@ -40,10 +40,11 @@ class Writer {
   // An arc in the plane across `arc.axis` (throws std::invalid_argument unless that is an axis of
   // the coordinate system) from the writer's position, whatever arc.start is. Selects the plane
   // when it is not active. The printed centre offsets, or the radius where the control gives that,
-  // are computed from the printed ends, so that both radii agree to within rounding. Returns false
-  // and writes nothing when the control's rules refuse the printed arc, when rounding would make it
-  // a full turn or none, or when it is not known how centres are to be given (G90.1, G91.1).
-  [[nodiscard]] bool arc_to(const geometry::Arc& arc, double feed);
+  // are computed from the printed ends, so that both radii agree to within rounding. Returns the
+  // arc that the printed numbers say; returns and writes nothing when the control's rules refuse
+  // that one, when rounding would make it a full turn or none, or when it is not known how centres
+  // are to be given (G90.1, G91.1).
+  [[nodiscard]] std::optional<geometry::Arc> arc_to(const geometry::Arc& arc, double feed);
 
   // A clamped cubic curve in the control's own words (Control::curves), from the writer's position,
   // which is the curve's first point but for rounding. Axes that it does not move are not named,

@@ -13,17 +13,6 @@
 
 namespace batten::postproc {
 
-namespace {
-
-std::vector<TimedPiece> timed(const OutputPlan& plan) {
-  std::vector<TimedPiece> moves;
-  moves.reserve(plan.moves.size());
-  for (const PlannedMove& move : plan.moves) moves.push_back({move.piece, move.feed});
-  return moves;
-}
-
-}  // namespace
-
 std::optional<Candidate> make_candidate(const RunTask& task, const RunTimes& times,
                                         const OutputPlan& plan, const RunFacts& facts) {
   const auto& [run, context, options, scope, memo] = task;
@@ -44,14 +33,14 @@ std::optional<Candidate> make_candidate(const RunTask& task, const RunTimes& tim
   candidate.form = plan.form;
   candidate.chords_for_steps = plan.chords_for_steps;
   candidate.arcs_as_chords = plan.arcs_as_chords;
-  const std::vector<TimedPiece> moves = timed(plan);
+  std::vector<TimedPiece> moves = std::move(text->moves);
   Figures& figures = candidate.figures;
   figures.times = times.of_candidate(moves, facts.scale.original.times);
   figures.blocks = static_cast<double>(text->blocks);
   figures.bytes = static_cast<double>(text->text.size());
   figures.roughness = roughness_of(moves);
   candidate.text = std::move(*text);
-  if (context.is_piece() || memo != nullptr) candidate.moves = moves;
+  if (context.is_piece() || memo != nullptr) candidate.moves = std::move(moves);
   return candidate;
 }
 
@@ -62,6 +51,13 @@ bool curves_wanted(const RunTask& task) {
   const gcode::CurveFormat* format = options.target->curves;
   if (format == nullptr || !may_start(*format, task.context.before)) return false;
   return options.output == Form::kCurves || (options.output == Form::kAuto && format->is_default);
+}
+
+std::vector<TimedPiece> timed(const OutputPlan& plan) {
+  std::vector<TimedPiece> moves;
+  moves.reserve(plan.moves.size());
+  for (const PlannedMove& move : plan.moves) moves.push_back({move.piece, move.feed});
+  return moves;
 }
 
 // The run between two vertices, at the feed that it has at the first.

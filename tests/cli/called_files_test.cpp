@@ -104,7 +104,8 @@ TEST_F(CalledFilesOfAUser, AreNotReadWhereTheProgramHoldsThem) {
 TEST_F(CalledFilesOfAUser, HaveTheirNamesOnEachControl) {
   folder_.put("part.nc", caller("o<lift> call [5]"));
   folder_.put("lift.ngc", "o<lift> sub\nG0 Z9\no<lift> endsub\nM2\n");
-  expect_exit(smooth("--target linuxcnc"), 0, {"1 rewritten", "o<lift>: lift.ngc was read"});
+  expect_exit(smooth("--target linuxcnc --machine linuxcnc-fast"), 0,
+              {"1 rewritten", "o<lift>: lift.ngc was read"});
 
   folder_.put("part.nc", "; a part\nG71 G90 G17 G94\nG0 X0 Y0 Z5\nL54\nG0 X0 Y0\nG1 Z-1 F300\n" +
                              postproc::joined(postproc::wave_lines({}), "\n") + "M30\n");
@@ -138,9 +139,9 @@ struct VariableRow {
 
 // By the value of before the call the wave would be half as long.
 const VariableRow kVariables[] = {
-    {"linuxcnc", "#100=1", "[#100*{}]", "o<twice> call", "twice.ngc",
+    {"linuxcnc --machine linuxcnc-fast", "#100=1", "[#100*{}]", "o<twice> call", "twice.ngc",
      "o<twice> sub\n#100=2\no<twice> endsub\nM2\n"},
-    {"linuxcnc", "#1=1", "[#1*{}]", "o<twice> call", "twice.ngc",
+    {"linuxcnc --machine linuxcnc-fast", "#1=1", "[#1*{}]", "o<twice> call", "twice.ngc",
      "o<twice> sub\n#1=2\no<twice> endsub\nM2\n"},
     {"haas", "#100=1.", "[#100*{}]", "M98 P1000", "O1000.nc", "O1000\n#100=2.\nM99\n"},
     {"fanuc", "#1=1.", "[#1*{}]", "M98 P1000", "O1000.nc", "O1000\n#1=2.\nM99\n"},

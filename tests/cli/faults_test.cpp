@@ -26,7 +26,8 @@ std::string part_program() { return postproc::wave_program(); }
 // $B is the program; `smooth_to FILE IN` smooths IN for LinuxCNC.
 std::string script(const std::string& lines) {
   return "export B='" BATTEN_BINARY
-         "'\nsmooth_to() { out=$1; shift; \"$B\" smooth \"$@\" --target linuxcnc -o \"$out\"; }\n" +
+         "'\nsmooth_to() { out=$1; shift; \"$B\" smooth \"$@\" --target linuxcnc --machine "
+         "linuxcnc-fast -o \"$out\"; }\n" +
          lines;
 }
 
@@ -82,18 +83,23 @@ INSTANTIATE_TEST_SUITE_P(
     Cli, Faults,
     testing::Values(
         // --- where the output goes ---
-        Fault{"FullDisk", FULL_DISK "$B smooth part.nc --target linuxcnc -o full/new.nc" KEEPS_OLD,
-              4, "full/new.nc: cannot be written: No space left on device", false, Needs::kMounts},
-        Fault{"FullDiskInPlace",
-              FULL_DISK "$B smooth full/old.nc --target linuxcnc --in-place" KEEPS_OLD, 4,
-              "full/old.nc: cannot be written: No space left on device", false, Needs::kMounts},
+        Fault{
+            "FullDisk",
+            FULL_DISK
+            "$B smooth part.nc --target linuxcnc --machine linuxcnc-fast -o full/new.nc" KEEPS_OLD,
+            4, "full/new.nc: cannot be written: No space left on device", false, Needs::kMounts},
+        Fault{
+            "FullDiskInPlace",
+            FULL_DISK
+            "$B smooth full/old.nc --target linuxcnc --machine linuxcnc-fast --in-place" KEEPS_OLD,
+            4, "full/old.nc: cannot be written: No space left on device", false, Needs::kMounts},
         Fault{"FullDiskForTheReportAlone",
-              FULL_DISK
-              "$B smooth part.nc --target linuxcnc -o new.nc --json full/report.json" KEEPS_OLD,
+              FULL_DISK "$B smooth part.nc --target linuxcnc --machine linuxcnc-fast -o new.nc "
+                        "--json full/report.json" KEEPS_OLD,
               4, "full/report.json: cannot be written: No space left", true, Needs::kMounts},
         Fault{"FullDiskForThePage",
-              FULL_DISK
-              "$B smooth part.nc --target linuxcnc -o new.nc --report full/p.html" KEEPS_OLD,
+              FULL_DISK "$B smooth part.nc --target linuxcnc --machine linuxcnc-fast -o new.nc "
+                        "--report full/p.html" KEEPS_OLD,
               4, "full/p.html: cannot be written: No space left", true, Needs::kMounts},
         Fault{"FileLargerThanAllowed",
               "for i in 1 2 3 4 5 6 7 8 9; do for j in 1 2 3 4 5 6 7 8 9; do echo '(a comment "
@@ -113,18 +119,21 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"ClosedStandardInput", "smooth_to new.nc - <&-", 4, "<stdin>: cannot be read"},
         Fault{"ReadOnlyFileSystem",
               "mkdir ro; unshare -m sh -c 'mount -t tmpfs none ro; cp part.nc ro/old.nc; "
-              "mount -o remount,ro ro; $B smooth ro/old.nc --target linuxcnc --in-place; "
+              "mount -o remount,ro ro; $B smooth ro/old.nc --target linuxcnc --machine "
+              "linuxcnc-fast --in-place; "
               "code=$?; cmp part.nc ro/old.nc || exit 90; exit $code'",
               4, "ro/old.nc: cannot be written: ro: Read-only file system", false, Needs::kMounts},
         Fault{"ReadOnlyFolder",
               "ln \"$B\" program || cp \"$B\" program; chmod 755 . program; mkdir -m 755 ro; "
               "cp part.nc ro/old.nc; setpriv --reuid=65534 --regid=65534 --clear-groups "
-              "./program smooth ro/old.nc --target linuxcnc -o ro/new.nc; code=$?; [ $(ls -A "
+              "./program smooth ro/old.nc --target linuxcnc --machine linuxcnc-fast -o ro/new.nc; "
+              "code=$?; [ $(ls -A "
               "ro | wc -l) = 1 ] || exit 91; exit $code",
               4, "ro/new.nc: cannot be written: ro: Permission denied", false, Needs::kOtherUser},
         Fault{"OtherFileSystem",
               "mkdir far; unshare -m sh -c 'mount -t tmpfs none far; $B smooth part.nc "
-              "--target linuxcnc -o far/new.nc; code=$?; [ $(ls -A far | wc -l) = 1 ] || exit "
+              "--target linuxcnc --machine linuxcnc-fast -o far/new.nc; code=$?; [ $(ls -A far | "
+              "wc -l) = 1 ] || exit "
               "91; cp far/new.nc .; exit $code'",
               0, "part.nc -> far/new.nc", true, Needs::kMounts},
         Fault{"NoSuchFolder", "smooth_to no/new.nc part.nc", 4,
@@ -149,7 +158,7 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"InputThatMayNotBeRead",
               "ln \"$B\" program || cp \"$B\" program; chmod 755 . program; cp part.nc "
               "mine.nc; chmod 600 mine.nc; setpriv --reuid=65534 --regid=65534 --clear-groups "
-              "./program smooth mine.nc --target linuxcnc -o new.nc",
+              "./program smooth mine.nc --target linuxcnc --machine linuxcnc-fast -o new.nc",
               4, "mine.nc: Permission denied", false, Needs::kOtherUser},
         Fault{"InputOfMoreThanPlacesCanCount",
               "truncate -s 5G huge.nc; smooth_to new.nc huge.nc; code=$?; rm huge.nc; exit $code",
@@ -192,7 +201,7 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"NamesLikeOptions", "cp part.nc ./-x.nc; smooth_to new.nc ./-x.nc", 0, "", true},
         Fault{"NamesAsLongAsNamesMayBe",
               "n=$(printf '%0251d' 7).nc; mkdir d; cp part.nc d/$n; \"$B\" smooth d/$n "
-              "--target linuxcnc --in-place && mv d/$n new.nc && rmdir d",
+              "--target linuxcnc --machine linuxcnc-fast --in-place && mv d/$n new.nc && rmdir d",
               0, "", true},
         Fault{"NamesLongerThanNamesMayBe", "smooth_to $(printf '%0300d' 7) part.nc", 4,
               "File name too long"}),
@@ -203,7 +212,8 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(OddPrograms, OfNoBytesIsCopied) {
   const BattenFolder folder;
   folder.put("part.nc", "");
-  expect_exit(folder.batten("smooth part.nc --target linuxcnc --units mm"), 0);
+  expect_exit(folder.batten("smooth part.nc --target linuxcnc --machine linuxcnc-fast --units mm"),
+              0);
   EXPECT_TRUE(folder.has("part.smooth.nc"));
   EXPECT_EQ(folder.text_of("part.smooth.nc"), "");
 }
@@ -226,7 +236,8 @@ TEST_P(LongLines, AreCopiedAndTheRestIsSmoothed) {
       "\n" + (test.begin + std::string(size, test.character)) + test.end + "\n";
   const BattenFolder folder;
   folder.put("part.nc", part_program() + line + part_program());
-  expect_exit(folder.batten("smooth part.nc --target linuxcnc -o new.nc"), 0);
+  expect_exit(folder.batten("smooth part.nc --target linuxcnc --machine linuxcnc-fast -o new.nc"),
+              0);
   const std::string text = folder.text_of("new.nc");
   const std::size_t at = text.find(line);
   ASSERT_NE(at, std::string::npos);

@@ -1,6 +1,7 @@
 #include "postproc/smooth/forms/program_writer.h"
 
 #include <algorithm>
+#include <span>
 
 #include "gcode/curves/curve_format.h"
 #include "gcode/state/modal_state.h"
@@ -29,22 +30,25 @@ class RunWriter {
   void write(const PlannedMove& move) {
     const std::size_t begin = writer_.text().size();
     if (const auto* arc = std::get_if<geometry::Arc>(&move.piece)) {
-      if (writer_.arc_to(*arc, move.feed)) {
+      if (const auto printed = writer_.arc_to(*arc, move.feed)) {
+        result_.moves.push_back({*printed, move.feed});
         ++result_.arcs;
       } else {
         write_chords(*arc, move.feed);
       }
     } else {
-      writer_.line_to(geometry::end_point(move.piece), move.feed);
+      write_line(geometry::end_point(move.piece), move.feed);
     }
     count_from(begin);
   }
 
   // Curves of many blocks follow each other with the end of the one between them.
-  [[nodiscard]] bool write(const PlannedCurve& curve, double feed, int last_decimals) {
+  [[nodiscard]] bool write(const PlannedCurve& curve, std::span<const PlannedMove> moves,
+                           int last_decimals) {
     const std::size_t begin = writer_.text().size();
     if (!target_.curves->is_block_per_piece) writer_.end_curve();
-    if (!writer_.curve_to(curve.curve, feed, last_decimals)) return false;
+    if (!writer_.curve_to(curve.curve, moves.front().feed, last_decimals)) return false;
+    for (const PlannedMove& move : moves) result_.moves.push_back({move.piece, move.feed});
     count_from(begin);
     return true;
   }
@@ -71,12 +75,19 @@ class RunWriter {
   }
 
  private:
+  void write_line(const geometry::Point3& end, double feed) {
+    const geometry::Point3 start = writer_.state().position.mm;
+    writer_.line_to(end, feed);
+    const geometry::Point3& reached = writer_.state().position.mm;
+    if (reached != start) result_.moves.push_back({geometry::Line{start, reached}, feed});
+  }
+
   // Chords that differ from the arc by half a printed step at most.
   void write_chords(const geometry::Arc& arc, double feed) {
     const gcode::Units units = writer_.state().modal.units;
     const double deviation = gcode::printed_step(place_format(target_, units), units) / 2;
     for (const geometry::PathPiece& chord : chords_for(arc, deviation)) {
-      writer_.line_to(geometry::end_point(chord), feed);
+      write_line(geometry::end_point(chord), feed);
     }
   }
 
@@ -155,7 +166,8 @@ std::optional<RunText> write_run(const OutputPlan& plan, const Run& run,
       if (target.curves == nullptr) return std::nullopt;
       const std::size_t end = i + curve->count;
       const bool last = end == plan.moves.size();
-      if (!out.write(*curve, move.feed, last ? std::min(run.decimals, kMostDecimals) : 0)) {
+      if (!out.write(*curve, std::span(plan.moves).subspan(i, curve->count),
+                     last ? std::min(run.decimals, kMostDecimals) : 0)) {
         return std::nullopt;
       }
       // Nothing stands inside a curve.

@@ -4,10 +4,12 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "gcode/control/control.h"
 #include "gcode/state/modal_state.h"
 #include "gcode/text/program.h"
+#include "postproc/machine/models/cycle_time.h"
 #include "postproc/runs/section.h"
 #include "postproc/smooth/forms/output_plan.h"
 
@@ -17,6 +19,7 @@ struct RunText {
   std::string text;        // whole lines, with line ends
   std::size_t blocks = 0;  // those of comments among them
   std::size_t arcs = 0;
+  std::vector<TimedPiece> moves;  // as the printed numbers say, but curves, which are as planned
 };
 
 // The run's blocks. `before` is the state after the last block before the run (the position is the

@@ -116,6 +116,30 @@ TEST(WriteRun, RestoresNothingThatTheNextBlockDoesNotNeed) {
   EXPECT_EQ(written(planned, "linuxcnc", cutting(), cutting())->text, "G2 X2 I1\nG1\n");
 }
 
+// Times are of these: what a control reads brakes at turns that the plan does not have.
+TEST(WriteRun, HasTheMovesThatItsNumbersSay) {
+  Planned planned({0, 0, 0});
+  planned.line({1.0004, 0.0004, 0});
+  planned.line({1.0004, 0.00041, 0});  // prints nothing
+  planned.arc({3.0004, 0.0004, 0}, {2.0004, 0.0003, 0}, Vector3::UnitZ(), -std::numbers::pi);
+  planned.line({5.0006, 0.0006, 0}, 500);
+  planned.line({6, 0, 0}, 500);
+  const auto out = written(planned, "klipper", cutting(), cutting());
+  ASSERT_TRUE(out);
+  ASSERT_EQ(out->moves.size(), 4U) << out->text;
+  const std::array<Point3, 4> ends = {Point3(1, 0, 0), {3, 0, 0}, {5.001, 0.001, 0}, {6, 0, 0}};
+  for (std::size_t i = 0; i < ends.size(); ++i) {
+    const geometry::PathPiece& piece = out->moves[i].piece;
+    const Point3 start = i == 0 ? Point3::Zero() : ends[i - 1];
+    EXPECT_LE((geometry::start_point(piece) - start).norm(), 1e-12) << i;
+    EXPECT_LE((geometry::end_point(piece) - ends[i]).norm(), 1e-12) << i;
+    EXPECT_EQ(out->moves[i].feed, i < 2 ? 1000 : 500);
+  }
+  ASSERT_TRUE(std::holds_alternative<geometry::Arc>(out->moves[1].piece));
+  EXPECT_LE((std::get<geometry::Arc>(out->moves[1].piece).center - Point3(2, 0.0003, 0)).norm(),
+            1e-12);
+}
+
 TEST(WriteRun, MeetsTheLastPointWithAllItsDecimals) {
   for (const std::string_view target : {"grbl", "linuxcnc"}) {
     for (const double inch : {1.0, 25.4}) {
