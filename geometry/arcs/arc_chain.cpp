@@ -445,25 +445,29 @@ std::optional<std::vector<ChainPiece>> arc_chain(const PlaneCurve& curve,
                                                  const ArcChainLimits& limits,
                                                  const ChainNode& start, const ChainNode& end,
                                                  std::size_t at_most) {
-  auto best = ArcChain(curve, limits).greedy(start, end, at_most);
-  if (!best || best->size() > kChain.balanced_pieces) return best;
-  // With as many pieces, how much smaller can the deviation be?
+  return ArcChain(curve, limits).greedy(start, end, at_most);
+}
+
+std::vector<ChainPiece> balanced(const PlaneCurve& curve, const ArcChainLimits& limits,
+                                 const ChainNode& start, const ChainNode& end,
+                                 std::vector<ChainPiece> chain) {
+  if (chain.size() > kChain.balanced_pieces) return chain;
   double good = 1;
   double small = 0;
-  for (int round = 0; round < kChain.balancing_rounds && best->size() > 2; ++round) {
+  for (int round = 0; round < kChain.balancing_rounds && chain.size() > 2; ++round) {
     const double part = (good + small) / 2;
     ArcChainLimits narrower = limits;
     narrower.deviation *= part;
     narrower.max_sweep *= std::cbrt(part);  // deviations grow with the cube of the length
-    auto chain = ArcChain(curve, narrower).greedy(start, end, best->size());
-    if (chain) {
-      best = std::move(chain);
+    auto found = ArcChain(curve, narrower).greedy(start, end, chain.size());
+    if (found) {
+      chain = std::move(*found);
       good = part;
     } else {
       small = part;
     }
   }
-  return best;
+  return chain;
 }
 
 }  // namespace batten::geometry

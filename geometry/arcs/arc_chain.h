@@ -73,13 +73,19 @@ struct ChainPiece {
 // its pace that it will not do with `most` of them.
 [[nodiscard]] bool falls_behind(double done, std::size_t used, std::size_t most);
 
-// Pieces from one node to the other, the fewest first, then the least deviation. Nothing
-// when neither arcs nor short lines hold, or when more than `at_most` would be needed.
+// Few pieces from one node to the other. Nothing when neither arcs nor short lines hold, or when
+// more than `at_most` would be needed.
 [[nodiscard]] std::optional<std::vector<ChainPiece>> arc_chain(const PlaneCurve& curve,
                                                                const ArcChainLimits& limits,
                                                                const ChainNode& start,
                                                                const ChainNode& end,
                                                                std::size_t at_most);
+
+// As many pieces as `chain` has between the same nodes or fewer, with the least deviation. A long
+// chain as it is. Up to five times the work of the chain itself.
+[[nodiscard]] std::vector<ChainPiece> balanced(const PlaneCurve& curve,
+                                               const ArcChainLimits& limits, const ChainNode& start,
+                                               const ChainNode& end, std::vector<ChainPiece> chain);
 
 // Whether a pair of arcs leads from the curve at one parameter to the curve at another one.
 [[nodiscard]] bool pair_of_arcs_holds(const PlaneCurve& curve, const ArcChainLimits& limits,

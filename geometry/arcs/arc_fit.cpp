@@ -103,31 +103,52 @@ class ArcFit {
     std::size_t left = most;
     const double from = marked_.pieces.first();
     const double length = marked_.pieces.last() - from;
-    Path path;
+    std::vector<Chain> chains;
     for (std::size_t i = 0; i < sections.size(); ++i) {
-      const ArcSection& section = sections[i];
-      const Point3& to = stops[i + 1].place;
       if (left == 0) return std::nullopt;
-      if (section.straight) {
-        --left;
-        append({Point2::Zero(), to.head<2>()}, to.z(), path);
-        continue;
-      }
-      const ChainNode start{section.from, stops[i].place, stops[i].leaving};
-      const ChainNode end{section.to, to, stops[i + 1].arriving};
-      auto pieces = flat_ ? spline_between(start, end, left) : std::nullopt;
-      if (!pieces) pieces = arc_chain(curve_, limits_, start, end, left);
-      if (!pieces) return std::nullopt;
-      left -= pieces->size();
-      if (!flat_ && falls_behind((section.to - from) / length, most - left, most)) {
+      auto chain = chain_of(sections[i], stops[i], stops[i + 1], left);
+      if (!chain) return std::nullopt;
+      left -= chain->pieces.size();
+      if (!flat_ && falls_behind((sections[i].to - from) / length, most - left, most)) {
         return std::nullopt;
       }
-      for (const ChainPiece& piece : *pieces) append(piece.arc, piece.end_height, path);
+      chains.push_back(std::move(*chain));
+    }
+    Path path;
+    for (Chain& chain : chains) {
+      if (chain.greedy) {
+        chain.pieces = balanced(curve_, limits_, chain.start, chain.end, std::move(chain.pieces));
+      }
+      for (const ChainPiece& piece : chain.pieces) append(piece.arc, piece.end_height, path);
     }
     return path;
   }
 
  private:
+  struct Chain {  // of a section
+    ChainNode start;
+    ChainNode end;
+    std::vector<ChainPiece> pieces;
+    bool greedy = false;  // by arc_chain
+  };
+
+  [[nodiscard]] std::optional<Chain> chain_of(const ArcSection& section, const ArcStop& from,
+                                              const ArcStop& to, std::size_t at_most) const {
+    Chain chain{{section.from, from.place, from.leaving}, {section.to, to.place, to.arriving}, {}};
+    if (section.straight) {
+      chain.pieces = {{{Point2::Zero(), to.place.head<2>()}, to.place.z()}};
+      return chain;
+    }
+    auto pieces = flat_ ? spline_between(chain.start, chain.end, at_most) : std::nullopt;
+    if (!pieces) {
+      pieces = arc_chain(curve_, limits_, chain.start, chain.end, at_most);
+      chain.greedy = true;
+    }
+    if (!pieces) return std::nullopt;
+    chain.pieces = std::move(*pieces);
+    return chain;
+  }
+
   [[nodiscard]] std::vector<ArcSection> cut() const {
     std::vector<double> corners = marked_.corners;
     corners.push_back(marked_.pieces.last());

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <utility>
 #include <vector>
@@ -101,7 +102,7 @@ class CurveForms {
         bends_(given.bends),
         share_(given.share),
         left_(given.left),
-        around_vertices_(given.around_vertices),
+        is_first_(given.is_first),
         one_sided_(setting.task.options.side != geometry::Side::kBoth),
         pieces_(curve_.path.curve),
         result_(result) {}
@@ -116,7 +117,7 @@ class CurveForms {
       if (has_form(Form::kCurves)) return;
     }
     if (wanted != Form::kLines) offer_arcs();
-    if (wanted != Form::kLines && is_fair && around_vertices_) offer_arc_splines();
+    if (wanted != Form::kLines && is_fair && is_first_) offer_arc_splines();
     if (wanted != Form::kArcs) offer_lines();
     make_best();
   }
@@ -144,9 +145,14 @@ class CurveForms {
         offer.options.most_arcs = setting_.bounds.most_blocks(offer.form, offer.distance);
       }
       auto candidate = made(offer);
+      const bool limited = offer.options.most_arcs < PlanOptions().most_arcs;
+      if (is_first_ && offer.form == Form::kArcs && !offer.around_vertices) {
+        if (candidate) result_.arcs = candidate->figures.blocks;
+        if (!candidate && limited) result_.arcs = static_cast<double>(offer.options.most_arcs);
+      }
       if (candidate) {
         result_.candidates.push_back(std::move(*candidate));
-      } else if (offer.options.most_arcs < PlanOptions().most_arcs) {
+      } else if (limited) {
         result_.left_out = true;  // there may be more arcs than these
       }
     }
@@ -233,12 +239,17 @@ class CurveForms {
   }
 
   void offer_arcs() {
-    // Each straight part is a line, and what joins two of them gently takes two arcs or more.
-    const auto blocks = 3.0 * static_cast<double>(pieces_.straight_runs.size());
+    // Each straight part is a line, and what joins two of them gently takes two arcs or more. With
+    // the room that the first curve had others take about as many.
+    const double least = 3.0 * static_cast<double>(pieces_.straight_runs.size());
+    const double blocks = is_first_ ? least : std::max(least, result_.arcs);
     const std::vector<double> all = deviations();
     const bool flat =
         lies_across(task_.run, 0) || lies_across(task_.run, 1) || lies_across(task_.run, 2);
-    if (!flat && !arcs_may_serve()) {
+    if (!flat && is_first_ && !arcs_may_serve()) {
+      result_.arcs = std::numeric_limits<double>::infinity();
+    }
+    if (std::isinf(result_.arcs)) {
       result_.left_out = true;
       return;
     }
@@ -350,7 +361,7 @@ class CurveForms {
   const CurvatureProfile& bends_;
   double share_;
   double left_;
-  bool around_vertices_;
+  bool is_first_;
   bool
       one_sided_;  // the run must not be cut on one side: what is written follows the curve closely
   geometry::MarkedPieces pieces_;

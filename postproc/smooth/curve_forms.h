@@ -48,10 +48,9 @@ struct FormSetting {
 struct CurveOfRun {
   const RunCurve& curve;
   const CurvatureProfile& bends;
-  double share = 0;  // mm, of the tolerance: the form's
-  double left = 0;   // mm, what the curve leaves of the tolerance
-  // Whether arcs around the vertices are wanted, which are the same for every curve.
-  bool around_vertices = true;
+  double share = 0;      // mm, of the tolerance: the form's
+  double left = 0;       // mm, what the curve leaves of the tolerance
+  bool is_first = true;  // of the run: the path that was meant, or what was asked for by name
 };
 
 // The candidate's method and curvature are left to who knows them. Nothing where the target cannot

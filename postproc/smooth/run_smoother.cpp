@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 
+#include "gcode/curves/curve_format.h"
 #include "gcode/state/reason.h"
 #include "postproc/runs/run_path.h"
 #include "postproc/smooth/curve_forms.h"
@@ -24,8 +25,6 @@ struct RunTuning {
   // need more.
   double lent = 0.6;
   double lent_to_fair = 0.5;
-  // Chords that are farther from the path than by so many times their rounding are there for it.
-  double of_rounding = 3;
   // Chords that are so far from the path (rms), in parts of the tolerance of the curve, may leave
   // no room to pass their ends; with so many times the tolerance there is.
   double takes_much = 0.35;
@@ -76,9 +75,7 @@ class RunSmoother {
         find_meant(fair->path, meant);
         add_candidates_of(*fair);
         try_simpler(meant);
-        if (options().prefer != Prefer::kAccuracy && (may_win_time() || is_none_better())) {
-          try_curve(Method::kFair, curve_request(Method::kFair));
-        }
+        if (is_worth_rounding()) try_curve(Method::kFair, curve_request(Method::kFair));
         if (method == Method::kBest) try_others();
       }
     } else if (const auto curve = curve_by(method, curve_request(method))) {
@@ -153,22 +150,19 @@ class RunSmoother {
     if (!(left > 0)) return;
     fits_ = true;
     const CurvatureProfile bends(curve.path.curve);
-    add_forms({task_, times_, bounds_, *meant_},
-              {curve, bends, shares_.form, left, !looked_around_vertices_}, result_);
-    if (curve.method == Method::kFair) looked_around_vertices_ = true;
+    add_forms({task_, times_, bounds_, *meant_}, {curve, bends, shares_.form, left, is_first_},
+              result_);
+    is_first_ = false;
   }
 
-  // A curve that leaves of the vertices what their decimals do may be, and where few blocks are
-  // wanted, more than that, takes fewer of them. Parts of a run are fitted alike.
+  // Where few blocks are wanted: a curve that leaves the vertices by some of the tolerance takes
+  // fewer of them. Parts of a run are fitted alike.
   void try_simpler(CurveRequest request) {
-    const bool few =
-        wants_few_moves(options()) || (options().output == Form::kCurves && !options().quick);
-    const bool none = is_none_better() && !context().is_piece();
-    if (options().prefer == Prefer::kAccuracy || !(few || none)) return;
-    const bool fine = result_.facts.scale.original.distance < kRun.of_rounding * rounding_;
-    if (!few && (request.scatter > 0 || !fine)) return;
+    const bool few = wants_few_moves(options());
+    const bool few_curves = options().output == Form::kCurves && !options().quick;
+    if (options().prefer == Prefer::kAccuracy || !(few || few_curves)) return;
     request.near = false;
-    if (wants_few_moves(options())) {
+    if (few) {
       request.tolerance = shares_.smoothing + kRun.lent * shares_.form;
       request.scatter = std::max(request.scatter, kRun.spent * request.tolerance);
     }
@@ -200,7 +194,18 @@ class RunSmoother {
     return time;
   }
 
-  [[nodiscard]] bool is_none_better() const { return choose(result_, options()).order.empty(); }
+  // Whether a curve that rounds corners and spends the tolerance may be better: by its time, or
+  // where all there is is a little too slow. Where nothing is better so far, also where few blocks
+  // are wanted or the target is told curves: it is the simpler one, of fewer pieces.
+  [[nodiscard]] bool is_worth_rounding() const {
+    if (options().prefer == Prefer::kAccuracy) return false;
+    if (may_win_time()) return true;
+    const Selection so_far = choose(result_, options());
+    if (!so_far.order.empty()) return false;
+    const gcode::CurveFormat* curves = options().target->curves;
+    return so_far.reason == gcode::reason::kSlower || wants_few_moves(options()) ||
+           (curves != nullptr && curves->is_default);
+  }
 
   [[nodiscard]] bool may_win_time() const {
     return bounds_.least_time() <= kCost.clearly_faster * best_time();
@@ -213,8 +218,8 @@ class RunSmoother {
   CandidateBounds bounds_;
   std::optional<geometry::SmoothCurve> fair_;
   std::optional<MeantPath> meant_;
-  bool looked_around_vertices_ = false;  // for arcs, which are the same for every curve
-  bool fits_ = false;                    // a method found a curve inside the tolerance
+  bool is_first_ = true;  // the next curve that candidates are made of
+  bool fits_ = false;     // a method found a curve inside the tolerance
   SmoothedRun& result_;
 };
 
@@ -422,7 +427,8 @@ void revert_costly_pieces(CutRun& cut, std::vector<RunState>& works, const Smoot
     const Objection objection = objection_to(whole.after, whole.scale, options.prefer);
     if (objection == Objection::kSlower) {
       const std::size_t giving = std::max<std::size_t>(1, rewritten.size() / kRun.reverted_share);
-      for (RunState* piece : std::span(rewritten).last(giving)) piece->give_up(reason_for(objection));
+      for (RunState* piece : std::span(rewritten).last(giving))
+        piece->give_up(reason_for(objection));
     } else if (objection == Objection::kLarger || objection == Objection::kFarther) {
       for (RunState* piece : rewritten) {
         if (is_worse_in(*piece, objection)) piece->give_up(reason_for(objection));

@@ -17,8 +17,10 @@ using geometry::Vector3;
 // nothing to slow down with; sqrt(3)/2 leaves a half.
 constexpr double kNormalShare = std::numbers::sqrt3 / 2;
 
-// A Bezier piece runs on as this many parts of constant curvature.
-constexpr int kBezierParts = 32;
+// A Bezier piece runs on as parts of constant curvature: it is halved at most so often where its
+// bends slow it down, until the speeds that they allow differ by no more than this share.
+constexpr int kBezierHalvings = 5;
+constexpr double kEvenBend = 0.02;
 
 VelocityStretch line_stretch(const PathPiece& line, const Vector3& velocity, const Machine& m) {
   VelocityStretch s;
@@ -48,6 +50,23 @@ VelocityStretch bend_stretch(const PathPiece& bend, const Vector3& velocity, con
   return s;
 }
 
+// Whether the curvature of a bend makes it slower than `velocity` somewhere, and less slow
+// elsewhere.
+bool slows_unevenly(const PathPiece& bend, double velocity, const Machine& m) {
+  constexpr int kPlaces = 8;
+  double least = geometry::curvature_at(bend, 0);
+  double greatest = least;
+  for (int i = 1; i <= kPlaces; ++i) {
+    const double curvature = geometry::curvature_at(bend, double(i) / kPlaces);
+    least = std::min(least, curvature);
+    greatest = std::max(greatest, curvature);
+  }
+  const double acceleration = kNormalShare * limit_on(bend, axis_accelerations(m));
+  // The speed that a bend allows goes with the root of its radius.
+  return greatest * velocity * velocity > acceleration &&
+         least < greatest * (1 - kEvenBend) * (1 - kEvenBend);
+}
+
 // Rapids end in position, and so does every block of an exact mode.
 bool stops_between(const TimedPiece& before, const TimedPiece& after, gcode::PathMode path) {
   return before.rapid || after.rapid || path == gcode::PathMode::kExactStop ||
@@ -65,10 +84,7 @@ StretchChain look_ahead_stretches(std::span<const TimedPiece> pieces, const Mach
     const Vector3 axis_velocity = axis_velocities(machine, pieces[i].rapid);
     const double velocity = std::min({pieces[i].feed / 60, machine.path_feed,
                                       geometry::length_of(piece) / machine.block_period});
-    const auto add = [&](const PathPiece& part) {
-      VelocityStretch s = std::holds_alternative<geometry::Line>(part)
-                              ? line_stretch(part, axis_velocity, machine)
-                              : bend_stretch(part, axis_velocity, machine);
+    const auto add = [&](const PathPiece& part, VelocityStretch s) {
       s.length = geometry::length_of(part);
       s.jerk = std::min(limit_on(part, axis_jerks(machine)), machine.path_jerk);
       s.max_velocity = std::min(s.max_velocity, velocity);
@@ -77,12 +93,18 @@ StretchChain look_ahead_stretches(std::span<const TimedPiece> pieces, const Mach
       const auto index = static_cast<std::uint32_t>(i);
       if (places == WithPositions::kYes) chain.places.push_back({index, index, false, part});
     };
-    if (std::holds_alternative<geometry::CubicBezier>(piece)) {
-      for (int k = 0; k < kBezierParts; ++k) {
-        add(geometry::sub_piece(piece, double(k) / kBezierParts, double(k + 1) / kBezierParts));
+    const auto add_bend = [&](const PathPiece& bend, int halvings, const auto& again) -> void {
+      if (halvings == 0 || !slows_unevenly(bend, velocity, machine)) {
+        return add(bend, bend_stretch(bend, axis_velocity, machine));
       }
+      again(geometry::sub_piece(bend, 0, 0.5), halvings - 1, again);
+      again(geometry::sub_piece(bend, 0.5, 1), halvings - 1, again);
+    };
+    if (std::holds_alternative<geometry::Line>(piece)) {
+      add(piece, line_stretch(piece, axis_velocity, machine));
     } else {
-      add(piece);
+      const bool cubic = std::holds_alternative<geometry::CubicBezier>(piece);
+      add_bend(piece, cubic ? kBezierHalvings : 0, add_bend);
     }
     if (i + 1 == pieces.size()) break;
     chain.stretches.back().exit_velocity =

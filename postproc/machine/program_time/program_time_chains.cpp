@@ -63,8 +63,7 @@ void ChainCutter::add_motion(const ProgramStep& step, const std::vector<PathCont
   }
   control_ = control;
   // Bytes of blocks before it that made no motion: the line sends them too.
-  chain_.pieces.push_back(
-      {step.piece, step.feed, rapid, std::exchange(sent_, 0), step.says_speed});
+  chain_.pieces.push_back({step.piece, step.feed, rapid, std::exchange(sent_, 0), step.says_speed});
   chain_.steps.push_back(steps_);
   if (step.stops_after) return close(ChainEnd::kStop, use);
   if (chain_.pieces.size() < most_pieces_) return;
@@ -124,8 +123,10 @@ double ChainMotion::share_at(std::size_t i, double time) const {
 }
 
 double ChainMotion::time_below(std::size_t i, double velocity) const {
-  return with_jerk_ ? with_jerk_->time_below(velocity, start_of(i), end_of(i))
-                    : motion_of(i).time_below(velocity);
+  if (with_jerk_) return with_jerk_->time_below(velocity, start_of(i), end_of(i));
+  // Between two joints the speed is nowhere below that at the slower one.
+  if (velocity > 0 && std::min(velocities_[i], velocities_[i + 1]) >= velocity) return 0;
+  return motion_of(i).time_below(velocity);
 }
 
 }  // namespace batten::postproc

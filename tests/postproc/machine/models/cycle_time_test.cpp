@@ -184,6 +184,28 @@ TEST_P(EveryModel, TimesARoundBezierPieceAsAnArc) {
   EXPECT_NEAR(time_of({{quarter, kFeed}}, m), expected, 0.02 * expected);
 }
 
+// A bend that is sharp in one place is slow there alone: a piece takes as long as its 64 parts, one
+// of the length of them all with its greatest curvature would take far longer.
+TEST(LookAheadTime, OfAPieceThatBendsUnevenlyIsThatOfItsParts) {
+  Machine m = machine_of(ControllerModel::kLookAhead);
+  m.block_period = 1e-9;
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> place(-15, 15);
+  for (int i = 0; i < 100; ++i) {
+    geometry::CubicBezier bend;
+    for (Point3& point : bend.control) point = {place(random), place(random), place(random)};
+    std::vector<TimedPiece> parts;
+    constexpr int kParts = 64;
+    for (int k = 0; k < kParts; ++k) {
+      parts.push_back(
+          {geometry::sub_piece(PathPiece(bend), double(k) / kParts, double(k + 1) / kParts),
+           kFeed});
+    }
+    const double expected = time_of(parts, m);
+    EXPECT_NEAR(time_of({{bend, kFeed}}, m), expected, 0.1 * expected) << i;
+  }
+}
+
 // --- corners ------------------------------------------------------------------------------
 
 // At 90 degrees X stops and Y starts: each changes by v, at most a T = 1 mm/s.
