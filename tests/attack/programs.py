@@ -78,6 +78,8 @@ def between(target):
 class Programs:
     """For one target. Paths are chains of (point, feed) with rapids between; see `chains`."""
 
+    curves = 0.0  # how often a curve begins at a place
+
     def __init__(self, target, chance):
         self.target, self.random = target, chance
         self.like = LIKE.get(target, target)

@@ -298,6 +298,35 @@ TEST(CurveGroups, LeaveTheStateThatWhatFollowsNeeds) {
   EXPECT_EQ(read.meaning.states[read.meaning.blocks[line.block].state_after].feed, 2000);
 }
 
+// A control without curves gets arcs or lines of those that the user says LinuxCNC was meant to
+// run.
+TEST(CurveGroups, BecomeArcsForAControlWithoutCurves) {
+  const std::string text = tests::curve_program({}, CurveWord::kG5);
+  SmoothOptions options = options_for("grbl");
+  options.source = gcode::SourceKind::kNgc;
+  options.prefer = Prefer::kSize;
+  const SmoothResult result = smoothed(text, options);
+  EXPECT_TRUE(result.proved);
+  EXPECT_EQ(rewritten_runs(result), 1U);
+  EXPECT_EQ(result.text.find("G5"), std::string::npos);
+  const gcode::Control& linuxcnc = *gcode::find_control("linuxcnc");
+  EXPECT_TRUE(verdict_by(linuxcnc, text, result.text, 0.01).proved());
+  options.source = gcode::SourceKind::kAuto;
+  EXPECT_EQ(smoothed(text, options).text, text);
+}
+
+// What the control makes of such blocks is not certain, whichever form is written for them.
+TEST(CurveGroups, OfBsplineAreWarnedOf) {
+  SmoothOptions options = options_for("siemens-bspline");
+  options.prefer = Prefer::kSize;
+  options.output = Form::kLines;
+  const SmoothResult result = smoothed(tests::curve_program({}, CurveWord::kBspline), options);
+  ASSERT_EQ(rewritten_runs(result), 1U);
+  EXPECT_TRUE(std::ranges::any_of(result.diagnostics, [](const gcode::Diagnostic& found) {
+    return found.id == "curves-unverified" && found.severity == gcode::Severity::kWarning;
+  }));
+}
+
 // A weight, a polynomial above the third degree, curves of another control: not read, so not
 // touched.
 TEST(CurveGroups, ThatAreNotReadExactlyAreCopied) {
