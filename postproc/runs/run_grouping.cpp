@@ -206,8 +206,10 @@ class RunGrouper {
   std::size_t end_of_plunge(const std::vector<std::uint32_t>& chain, std::size_t begin) const {
     using Heading = RunBlocks::Heading;
     const auto flat = [&](std::size_t k) { return blocks_.heading(chain[k]) == Heading::kInPlane; };
+    // Of a curve no piece is taken for itself, of no length either.
     const auto along_z = [&](std::size_t k) {
-      return !blocks_.moves(chain[k]) || blocks_.heading(chain[k]) == Heading::kAlongZ;
+      if (blocks_.moves(chain[k])) return blocks_.heading(chain[k]) == Heading::kAlongZ;
+      return !read_.blocks[chain[k]].of_curve;
     };
     std::size_t end = begin;
     while (end < chain.size() && along_z(end)) ++end;

@@ -253,6 +253,18 @@ TEST(CurveGroups, OfPolyStayWhereALineTakesTheirMode) {
             "1-1 state-change; 2-2 rapid; 3-8 spline; 9-9 rapid");
 }
 
+// Pieces of no length belong to their curve, wherever the chain is cut.
+TEST(CurveGroups, TakeTheirPiecesOfNoLengthWithThem) {
+  const std::string head = "G71 G90 G17 G94\nG0 X0 Y0 Z5\n";
+  const std::string poly =
+      "POLY PO[X]=(0) PO[Y]=(0)\nPO[X]=(1) PO[Y]=(0,.01)\nPO[X]=(2) PO[Y]=(0,-.01)\nX3 PO[Y]=(0)\n"
+      "PO[X]=(3)\n";
+  EXPECT_EQ(outline(head + "G1 Z-1 F2000\n" + poly + "G1 Z5\n", "siemens"),
+            "1-1 state-change; 2-2 rapid; 3-3 plunge; 4-8 run; 9-9 plunge");
+  EXPECT_EQ(outline(head + "G1 F2000\n" + poly + "G0 Z9\n", "siemens"),
+            "1-1 state-change; 2-2 rapid; 3-3 state-change; 4-8 run; 9-9 rapid");
+}
+
 // Lines, a curve, lines and arcs: one run, in any form, with its feeds and comments.
 TEST(CurveGroups, AreSmoothedWithTheLinesBesideThem) {
   const auto pieces = tests::curve_pieces({.pieces = 30});
