@@ -55,6 +55,7 @@ Motion motion_of(const CurveMotion& piece, const CurveReading& curve) {
   motion.kind = MotionKind::kCurve;
   motion.start_known = motion.end_known = true;
   motion.axes_named = curve.axes;
+  motion.curve_decimals = static_cast<std::uint8_t>(curve.decimals);
   motion.piece = piece.piece;
   return motion;
 }

@@ -64,6 +64,7 @@ struct CurveReading {
   std::uint32_t blocks = 0;          // how many blocks say the curve, from the first on
   std::vector<CurveMotion> motions;  // in order, `block` increasing; they chain
   std::array<bool, 3> axes = {false, false, false};  // named by its blocks
+  int decimals = 0;            // most digits after the point of the places that its blocks name
   std::optional<double> feed;  // F of the first block, in the program's units per minute
 };
 

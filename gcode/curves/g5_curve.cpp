@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "gcode/curves/curve_print.h"
+#include "gcode/curves/g5_nurbs.h"
 #include "gcode/state/block_words.h"
 #include "geometry/basic/point.h"
 #include "geometry/basic/rounding.h"
@@ -20,6 +21,8 @@ using geometry::Point3;
 using geometry::Vector3;
 
 constexpr Code kG5 = 50;
+constexpr Code kG51 = 51;
+constexpr Code kG52 = 52;
 
 // The arcs of a sixteenth that turns by `a` radians are right to some 1e-15 / a^2 of its length:
 // to 1e-7 of it here, which is far less than is printed.
@@ -67,38 +70,142 @@ CurveWriting write_g5(const geometry::BsplineCurve& curve, const CurveSetting& s
   return lines;
 }
 
+// Why the block is none of this G word alone with its own letters, N and F; empty where it is.
+std::string_view trouble_with(const Block& block, const BlockWords& words, Code code,
+                              std::string_view others) {
+  if (block.opacity != ParseStatus::kNone) return "not words alone";
+  if (!words.has_g(code)) return "another word";
+  if (words.problem() != BlockWords::Problem::kNone || !words.all_numbers()) {
+    return "words that cannot be taken together";
+  }
+  const bool alone = words.g_codes().size() == 1 && words.m_codes().empty();
+  if (!alone || words.has_any("ABCDEHKLORSTUVWZ") || words.has_any(others)) {
+    return "other words in the block";
+  }
+  const Word* feed = words.find('F');
+  return feed != nullptr && !(feed->value > 0) ? "a feed of zero" : std::string_view();
+}
+
+bool has_all(const BlockWords& words, std::string_view letters) {
+  return std::ranges::all_of(letters, [&](char letter) { return words.has(letter); });
+}
+
+// Reads the blocks of one curve, one after the other.
+class G5Reader {
+ public:
+  G5Reader(const CurveStart& start)
+      : unit_(millimetres_per(start.units)), place_(start.position.mm) {
+    reading_.axes = {true, true, false};
+  }
+
+  // The way that two words say (mm).
+  [[nodiscard]] Vector3 way(const BlockWords& words, char x, char y) const {
+    return {words.find(x)->value * unit_, words.find(y)->value * unit_, 0};
+  }
+
+  // Where the block ends; an axis that it does not name stays.
+  [[nodiscard]] Point3 end_of(const BlockWords& words) const {
+    Point3 end = place_;
+    for (const int axis : {0, 1}) {
+      if (const Word* word = words.find("XY"[axis])) end[axis] = word->value * unit_;
+    }
+    return end;
+  }
+
+  // The block has a piece with these inner control points.
+  void add(std::uint32_t block, const BlockWords& words, const Point3& second,
+           const Point3& third) {
+    for (const char letter : std::string_view("XY")) {
+      const Word* word = words.find(letter);
+      if (word != nullptr) reading_.decimals = std::max<int>(reading_.decimals, word->decimals);
+    }
+    if (reading_.motions.empty() && words.has('F')) reading_.feed = words.find('F')->value;
+    const Point3 end = end_of(words);
+    reading_.motions.push_back({block, CubicBezier{{place_, second, third, end}}});
+    place_ = end;
+  }
+
+  [[nodiscard]] const Point3& place() const { return place_; }
+
+  // With so many blocks.
+  [[nodiscard]] CurveReading finish(std::uint32_t blocks) {
+    reading_.blocks = blocks;
+    return std::move(reading_);
+  }
+
+ private:
+  double unit_;
+  Point3 place_;  // where the next piece begins, mm
+  CurveReading reading_;
+};
+
+bool is_place_known(const CurveStart& start) {
+  return start.position.known[0] && start.position.known[1];
+}
+
+// G5 with all its words.
 CurveResult read_g5(const Program& program, std::uint32_t first, const CurveStart& start) {
   const Block& block = program.blocks[first];
-  if (block.opacity != ParseStatus::kNone) return CurveRefusal{"not words alone"};
   const BlockWords words(program.words_of(block));
-  if (!words.has_g(kG5)) return CurveRefusal{"no G5"};
-  if (words.problem() != BlockWords::Problem::kNone || !words.all_numbers()) {
-    return CurveRefusal{"words that cannot be taken together"};
+  const std::string_view trouble = trouble_with(block, words, kG5, "");
+  if (!trouble.empty()) return CurveRefusal{std::string(trouble)};
+  if (!has_all(words, "XYIJPQ")) return CurveRefusal{"one of X Y I J P Q is missing"};
+  if (!is_place_known(start)) return CurveRefusal{"the position is not known"};
+  G5Reader reader(start);
+  reader.add(first, words, reader.place() + reader.way(words, 'I', 'J'),
+             reader.end_of(words) + reader.way(words, 'P', 'Q'));
+  return reader.finish(1);
+}
+
+// G5 as LinuxCNC takes it, and what goes on from it: blocks of G5 without I and J leave in the
+// direction in which the one before arrived. A feed of their own ends the curve.
+CurveResult read_g5_chain(const Program& program, std::uint32_t first, const CurveStart& start) {
+  if (!is_place_known(start)) return CurveRefusal{"the position is not known"};
+  G5Reader reader(start);
+  Vector3 onwards = Vector3::Zero();
+  std::uint32_t end = first;
+  for (std::uint32_t at = first; at < program.blocks.size(); ++at) {
+    const Block& block = program.blocks[at];
+    const BlockWords words(program.words_of(block));
+    if (at > first && block.opacity == ParseStatus::kNone && !words.has_words()) continue;
+    const std::string_view trouble = trouble_with(block, words, kG5, "");
+    const bool whole = trouble.empty() && words.has_any("XY") && has_all(words, "PQ");
+    const bool leaves = has_all(words, "IJ");
+    if (at == first && !(whole && leaves)) {
+      return CurveRefusal{trouble.empty() ? "one of X Y I J P Q is missing" : std::string(trouble)};
+    }
+    if (at > first && (!whole || words.has_any("IJF"))) break;
+    if (leaves) onwards = reader.way(words, 'I', 'J');
+    const Vector3 back = reader.way(words, 'P', 'Q');
+    reader.add(at, words, reader.place() + onwards, reader.end_of(words) + back);
+    onwards = -back;
+    end = at + 1;
   }
-  if (words.g_codes().size() != 1 || !words.m_codes().empty() ||
-      words.has_any("ABCDEHKLORSTUVWZ")) {
-    return CurveRefusal{"other words in the block"};
+  return reader.finish(end - first);
+}
+
+// A quadratic piece, whose one inner control point I and J give from the start.
+CurveResult read_g5_1(const Program& program, std::uint32_t first, const CurveStart& start) {
+  const Block& block = program.blocks[first];
+  const BlockWords words(program.words_of(block));
+  const std::string_view trouble = trouble_with(block, words, kG51, "PQ");
+  if (!trouble.empty()) return CurveRefusal{std::string(trouble)};
+  if (!words.has_any("XY") || !has_all(words, "IJ")) {
+    return CurveRefusal{"I, J or both of X and Y are missing"};
   }
-  for (const char letter : std::string_view("XYIJPQ")) {
-    if (!words.has(letter)) return CurveRefusal{"one of X Y I J P Q is missing"};
-  }
-  if (!start.position.known[0] || !start.position.known[1]) {
-    return CurveRefusal{"the position is not known"};
-  }
-  const double unit = millimetres_per(start.units);
-  const auto value = [&](char letter) { return words.find(letter)->value * unit; };
-  const Point3 from = start.position.mm;
-  const Point3 to(value('X'), value('Y'), from.z());
-  CurveReading reading;
-  reading.blocks = 1;
-  reading.axes = {true, true, false};
-  if (const Word* feed = words.find('F')) {
-    if (!(feed->value > 0)) return CurveRefusal{"a feed of zero"};
-    reading.feed = feed->value;
-  }
-  reading.motions.push_back({first, CubicBezier{{from, from + Vector3(value('I'), value('J'), 0),
-                                                 to + Vector3(value('P'), value('Q'), 0), to}}});
-  return reading;
+  if (!is_place_known(start)) return CurveRefusal{"the position is not known"};
+  G5Reader reader(start);
+  const Point3 inner = reader.place() + reader.way(words, 'I', 'J');
+  const Point3 end = reader.end_of(words);
+  reader.add(first, words, (reader.place() + 2 * inner) / 3, (end + 2 * inner) / 3);
+  return reader.finish(1);
+}
+
+CurveResult read_linuxcnc(const Program& program, std::uint32_t first, const CurveStart& start) {
+  const BlockWords words(program.words_of(program.blocks[first]));
+  if (words.has_g(kG51)) return read_g5_1(program, first, start);
+  if (words.has_g(kG52)) return read_g5_nurbs(program, first, start);
+  return read_g5_chain(program, first, start);
 }
 
 // Whether the piece lies in a plane of XY and LinuxCNC's arcs follow it: they are two for each
@@ -209,7 +316,7 @@ const CurveFormat& linuxcnc_g5() {
       .other_mm = {.decimals = 5},
       .other_inch = {.decimals = 6},
       .write = write_g5,
-      .read = read_g5,
+      .read = read_linuxcnc,
       .takes = bends_one_way};
   return kFormat;
 }
@@ -217,6 +324,7 @@ const CurveFormat& linuxcnc_g5() {
 const CurveFormat& chopped_g5() {
   static const CurveFormat kFormat = [] {
     CurveFormat format = linuxcnc_g5();
+    format.read = read_g5;
     format.is_run_as_chords = true;
     format.chords_error = chopping_error;
     // Chords are found in 32-bit numbers: the fifth decimal would be noise.

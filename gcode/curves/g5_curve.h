@@ -24,6 +24,10 @@ namespace batten::gcode {
 // perhaps F and N, and nothing else but comments.
 
 // LinuxCNC 2.9: only under --output curves. Pieces that bend one way, in G17, not under G41, G42.
+//
+// It reads more than it writes: G5 with X or Y alone; G5 without I and J behind one, which goes on
+// in its direction, as one curve of several blocks; G5.1 (a quadratic piece); G5.2 .. G5.3 (a
+// B-spline with even knots and weights of 1).
 [[nodiscard]] const CurveFormat& linuxcnc_g5();
 
 // grblHAL and Marlin: only under --output curves, since arcs are run with far finer chords. Pieces

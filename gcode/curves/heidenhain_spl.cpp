@@ -124,6 +124,7 @@ struct SplBlock {
   std::string ends;          // "XY"
   std::string coefficients;  // "3X2X1X3Y2Y1Y"
   std::array<double, 3> end{};
+  int decimals = 0;  // of the end: most digits after the point
   std::array<Vector3, 3> k = {Vector3::Zero(), Vector3::Zero(), Vector3::Zero()};  // K1, K2, K3
   std::optional<double> feed;
 };
@@ -187,6 +188,7 @@ bool read_words(KlartextScanner words, bool is_first, SplBlock& block) {
     if (is_end) {
       block.ends += name;
       block.end[*axis] = value->value;
+      block.decimals = std::max(block.decimals, value->decimals);
     } else {
       block.feed = value->value;
     }
@@ -262,6 +264,7 @@ CurveResult read_spl(const Program& program, std::uint32_t first, const CurveSta
     }
     if (off <= kDecimalNoise) piece.control[0] = position;
     if (at == first) reading.feed = block->feed;
+    reading.decimals = std::max(reading.decimals, block->decimals);
     reading.motions.push_back({at, piece});
     at += block->lines;
     position = piece.control[3];

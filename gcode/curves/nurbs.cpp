@@ -55,13 +55,16 @@ struct NurbsBlock {
   std::optional<double> weight;
   std::optional<double> feed;
   std::array<std::optional<double>, 3> place;
+  int decimals = 0;     // of the place: most digits after the point
   bool others = false;  // words that do not belong in a curve, or that were not understood
 
   [[nodiscard]] bool has_place() const { return place[0] || place[1] || place[2]; }
 };
 
+bool is_axis(char letter) { return letter >= 'X' && letter <= 'Z'; }
+
 std::optional<double>* slot_of(char letter, NurbsBlock& block) {
-  if (letter >= 'X' && letter <= 'Z') return &block.place[static_cast<std::size_t>(letter - 'X')];
+  if (is_axis(letter)) return &block.place[static_cast<std::size_t>(letter - 'X')];
   return letter == 'P'   ? &block.order
          : letter == 'K' ? &block.knot
          : letter == 'R' ? &block.weight
@@ -80,6 +83,7 @@ NurbsBlock words_of_block(const Program& program, const Block& block) {
       read.begins = true;
     } else if (slot != nullptr && !*slot && word.is_number) {
       *slot = word.value;
+      if (is_axis(word.letter)) read.decimals = std::max<int>(read.decimals, word.decimals);
     } else {
       read.others = true;
     }
@@ -201,6 +205,7 @@ class NurbsReader {
       place_[static_cast<int>(axis)] = *block.place[axis] * unit_;
     }
     points_.push_back(place_);
+    reading_.decimals = std::max(reading_.decimals, block.decimals);
     knots_.push_back(*block.knot);
     point_blocks_.push_back(at);
     const double weight = block.weight.value_or(1);

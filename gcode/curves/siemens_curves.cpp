@@ -32,9 +32,13 @@ constexpr double kLongestPoly = 99999.9999;
 
 // --- words --------------------------------------------------------------------------------------
 
-// The words of a block by their names (upper case, without blanks: "X", "PO[X]", "PO[]", "POLY"),
-// each with its values: one, those in parentheses, or none.
-using SiemensWords = std::map<std::string, std::vector<double>, std::less<>>;
+struct SiemensWordValues {
+  std::vector<double> numbers;  // one, those in parentheses, or none
+  int decimals = 0;             // of the first one: digits after the point
+};
+
+// The words of a block by their names (upper case, without blanks: "X", "PO[X]", "PO[]", "POLY").
+using SiemensWords = std::map<std::string, SiemensWordValues, std::less<>>;
 
 std::string_view trimmed(std::string_view text) {
   text = without_blanks_before(text);
@@ -42,7 +46,7 @@ std::string_view trimmed(std::string_view text) {
 }
 
 // 0.5, or (18,-18, 6).
-bool read_values(std::string_view text, std::vector<double>& values) {
+bool read_values(std::string_view text, SiemensWordValues& values) {
   text = trimmed(text);
   if (text.starts_with('(')) text = text.substr(1, text.size() - 2);
   for (bool more = true; more;) {
@@ -51,7 +55,8 @@ bool read_values(std::string_view text, std::vector<double>& values) {
     const auto number = read_number(digits);
     if (!number || after_siemens_number(digits, 0) != digits.size()) return false;
     if (std::abs(number->value) >= kNumberLimit) return false;
-    values.push_back(number->value);
+    if (values.numbers.empty()) values.decimals = number->decimals;
+    values.numbers.push_back(number->value);
     more = comma < text.size();
     text = text.substr(more ? comma + 1 : comma);
   }
@@ -67,12 +72,12 @@ std::optional<SiemensWords> read_siemens_words(std::string_view text) {
     const SiemensToken token = lexer.next();
     if (token.kind == SiemensTokenKind::kEnd || token.kind == SiemensTokenKind::kComment) break;
     std::string name(1, token.letter);
-    std::vector<double> values = {token.number.value};
+    SiemensWordValues values{{token.number.value}, token.number.decimals};
     if (token.kind == SiemensTokenKind::kName) {
       const std::string_view whole = text.substr(token.span.begin, token.span.size());
       const std::size_t equals = std::min(whole.find('='), whole.size());
       name = without_blanks(in_capitals(whole.substr(0, equals)));
-      values.clear();
+      values = {};
       if (token.assigned && !read_values(whole.substr(equals + 1), values)) return std::nullopt;
     } else if (token.kind != SiemensTokenKind::kWord) {
       return std::nullopt;
@@ -82,7 +87,7 @@ std::optional<SiemensWords> read_siemens_words(std::string_view text) {
   return words;
 }
 
-const std::vector<double>* find(const SiemensWords& words, const std::string& name) {
+const SiemensWordValues* find(const SiemensWords& words, const std::string& name) {
   const auto found = words.find(name);
   return found == words.end() ? nullptr : &found->second;
 }
@@ -90,7 +95,7 @@ const std::vector<double>* find(const SiemensWords& words, const std::string& na
 // Of a word with one value.
 std::optional<double> value_of(const SiemensWords& words, const std::string& name) {
   const auto* values = find(words, name);
-  return values != nullptr ? std::optional(values->front()) : std::nullopt;
+  return values != nullptr ? std::optional(values->numbers.front()) : std::nullopt;
 }
 
 bool names_axis(std::string_view name) { return name == "X" || name == "Y" || name == "Z"; }
@@ -101,7 +106,8 @@ bool is_motion(const SiemensWords::value_type& word) {
 
 // Whether the word belongs to curves that begin with the keyword, or may be beside it.
 bool is_curve_word(const SiemensWords::value_type& word, std::string_view keyword) {
-  const auto& [name, values] = word;
+  const std::string& name = word.first;
+  const std::vector<double>& values = word.second.numbers;
   const bool poly = keyword == "POLY";
   if (name == "N" || name == keyword || names_axis(name)) return true;
   if (name == "PL" || name == "F") return values.size() == 1;
@@ -210,7 +216,7 @@ std::string add_poly(std::uint32_t at, const SiemensWords& words, double unit, P
   const double length = value_of(words, "PL").value_or(1);
   if (length < kShortestPoly || length > kLongestPoly) return "PL out of range";
   const auto* denominator = find(words, "PO[]");
-  if (denominator != nullptr && !is_one(*denominator)) return kNoCubic;
+  if (denominator != nullptr && !is_one(denominator->numbers)) return kNoCubic;
   const Point3 start = position.mm;
   Coefficients a = {start, Vector3::Zero(), Vector3::Zero(), Vector3::Zero()};
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -221,8 +227,9 @@ std::string add_poly(std::uint32_t at, const SiemensWords& words, double unit, P
     if (!position.known[axis]) return "the tool's position is not known";
     reading.axes[axis] = true;
     const auto i = static_cast<int>(axis);
-    position.mm[i] = values->front() * unit;
-    const auto of_axis = coefficients_of(start[i], *values, unit, length);
+    reading.decimals = std::max(reading.decimals, values->decimals);
+    position.mm[i] = values->numbers.front() * unit;
+    const auto of_axis = coefficients_of(start[i], values->numbers, unit, length);
     if (!of_axis) return kNoCubic;
     for (std::size_t k = 1; k < a.size(); ++k) a[k][i] = (*of_axis)[k];
   }
@@ -318,11 +325,12 @@ CurveResult read_bspline(const Program& program, std::uint32_t first, const Curv
     if (at != first && words->contains("F")) break;
     Point3 place = points.back();
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const auto value = value_of(*words, std::string(1, kAxisNames[axis]));
-      if (!value) continue;
+      const auto* value = find(*words, std::string(1, kAxisNames[axis]));
+      if (value == nullptr) continue;
       if (!start.position.known[axis]) return CurveRefusal{"the tool's position is not known"};
       reading.axes[axis] = true;
-      place[static_cast<int>(axis)] = *value * unit;
+      reading.decimals = std::max(reading.decimals, value->decimals);
+      place[static_cast<int>(axis)] = value->numbers.front() * unit;
     }
     points.push_back(place);
     lengths.push_back(*value_of(*words, "PL"));

@@ -242,6 +242,7 @@ class Interpreter {
       meaning_.kind = BlockKind::kSettings;  // it says a knot, or that the curve begins
       meaning_.barrier = reason::kSpline;
       meaning_.of_curve = true;
+      meaning_.begins_curve = i == first;
       meaning_.state_after = state_now();
       if (next != curve.motions.end() && next->block == i) {
         meaning_.kind = BlockKind::kMotion;
@@ -678,7 +679,7 @@ void make_all_opaque(const Program& program, Interpretation& read) {
     if (says_nothing || meaning.barrier == reason::kProgramMark) continue;
     meaning.kind = BlockKind::kOpaque;
     meaning.barrier = reason::kLatheProgram;
-    meaning.of_curve = false;
+    meaning.of_curve = meaning.begins_curve = false;
   }
 }
 

@@ -45,6 +45,10 @@ class MotionPath {
   [[nodiscard]] const geometry::Arc* arc() const {
     return bend_ != nullptr ? std::get_if<geometry::Arc>(bend_.get()) : nullptr;
   }
+  // nullptr where it is no cubic piece.
+  [[nodiscard]] const geometry::CubicBezier* cubic() const {
+    return bend_ != nullptr ? std::get_if<geometry::CubicBezier>(bend_.get()) : nullptr;
+  }
 
   operator geometry::PathPiece() const {
     return bend_ != nullptr ? *bend_ : geometry::PathPiece(geometry::Line{start_, end_});
@@ -73,7 +77,8 @@ struct Motion {
   // Every axis that the block names is known after it. False in G91 from an unknown place.
   bool end_known = false;
   std::array<bool, 3> axes_named = {false, false, false};  // X, Y, Z stand in the block
-  // A Line for kRapid and kLine, an Arc for kArc, a CubicBezier for kCurve; absolute mm.
+  std::uint8_t curve_decimals = 0;  // of kCurve: most digits after the point of the curve's places
+  // A Line for kRapid and kLine, an Arc for kArc, a CubicBezier or a Line for kCurve; absolute mm.
   MotionPath piece;
 };
 
@@ -99,8 +104,10 @@ struct BlockMeaning {
   // come from elsewhere (a label that is jumped to).
   bool entered_from_elsewhere = false;
   // One of the blocks that say a curve together, which is read exactly. Each of its pieces is the
-  // motion of one of them. `barrier` is reason::kSpline: curves are copied.
+  // motion of one of them. `barrier` is reason::kSpline: they are no blocks that act each for
+  // itself, and stay or are rewritten together.
   bool of_curve = false;
+  bool begins_curve = false;      // the first of them
   std::int32_t motion = -1;       // index into Interpretation::motions, -1: none
   std::uint32_t state_after = 0;  // index into Interpretation::states
 };

@@ -63,7 +63,11 @@ constexpr Explanation kExplanations[] = {
     {kProbe, "A probing move.", kCopied},
     {kCannedCycle, "A canned cycle, or a position of one.", kCopied},
     {kThreading, "A thread: the path is tied to the spindle.", kCopied},
-    {kSpline, "The block is part of a spline already.", kCopied},
+    {kSpline,
+     "The block is part of a spline that is not read exactly (weights, a degree above three, words "
+     "that the target does not have), or whose word or direction a block behind it needs.",
+     "--source names the control that the program was written for where the target has no such "
+     "words; let the block behind the spline name its motion (G1). Others are copied as they are."},
     {kCoordinateChange,
      "The origin moves, or a move is given in machine coordinates (G54, G92, G10, G28, G53 ..).",
      kCopied},

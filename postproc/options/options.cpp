@@ -9,6 +9,7 @@
 #include <iterator>
 #include <numbers>
 
+#include "gcode/controls/built_in.h"
 #include "gcode/state/reason.h"
 #include "geometry/fitting/fair/fair.h"
 
@@ -229,9 +230,22 @@ bool usual_caller_modes(std::span<const std::string> allowed) {
   return std::ranges::find(allowed, gcode::reason::kCallerModes) != allowed.end();
 }
 
+namespace {
+
+// A target without curves gets those of a program that the user says was written for a control of
+// the same language that has some: it cannot run them, so that they can mean nothing else there.
+const gcode::CurveFormat* curves_read(const gcode::Control& target, gcode::SourceKind source) {
+  if (target.curves != nullptr) return target.curves;
+  const gcode::Control* written_for = gcode::find_control(gcode::control_of(source));
+  const bool understood = written_for != nullptr && written_for->language == target.language;
+  return understood ? written_for->curves : nullptr;
+}
+
+}  // namespace
+
 void read_as(const gcode::Control* target, gcode::SourceKind source, gcode::ReadOptions& reading) {
   if (target == nullptr) return;
-  reading.curves = target->curves;
+  reading.curves = curves_read(*target, source);
   const bool is_auto = source == gcode::SourceKind::kAuto;
   if (is_auto || gcode::control_of(source) == target->name) reading.lacks = target->lacks;
   if (!is_auto) return;

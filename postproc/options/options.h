@@ -116,7 +116,8 @@ struct SmoothOptions {
 [[nodiscard]] bool calls_keep_modes(std::span<const std::string> allowed);
 
 // Sets how a program for this target is read; nullptr: one for any. What only that control has or
-// lacks counts where the program was written for no other. Its zero points are added to the own
+// lacks counts where the program was written for no other. A target without curves of its own gets
+// those of the control that the program was written for. Its zero points are added to the own
 // words.
 void read_as(const gcode::Control* target, gcode::SourceKind source, gcode::ReadOptions& reading);
 

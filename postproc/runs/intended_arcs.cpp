@@ -11,6 +11,7 @@ namespace batten::postproc {
 namespace {
 
 using geometry::Arc;
+using geometry::CubicBezier;
 using geometry::PathPiece;
 using geometry::Vector3;
 
@@ -18,7 +19,8 @@ using geometry::Vector3;
 constexpr double kCorner = 30 * std::numbers::pi / 180;
 
 // What a segment of length l is off its curve when it alone makes a kink a: a line a l / 8, an arc
-// through the ends and the middle of its section a l / 20 (docs/algorithms/arcs_in_runs.md).
+// through the ends and the middle of its section a l / 20 (docs/algorithms/arcs_in_runs.md). A
+// cubic piece, which bends as it likes, may be nearer still.
 constexpr double kLineOff = 1.0 / 8;
 constexpr double kArcOff = 1.0 / 20;
 
@@ -35,6 +37,14 @@ constexpr double kFullTurn = 2 * std::numbers::pi - 1e-6;
 
 const Arc* arc_of(const PrintedMotion& motion) { return std::get_if<Arc>(&motion.piece); }
 
+const CubicBezier* cubic_of(const PrintedMotion& motion) {
+  return std::get_if<CubicBezier>(&motion.piece);
+}
+
+bool is_line(const PrintedMotion& motion) {
+  return std::holds_alternative<geometry::Line>(motion.piece);
+}
+
 double rise_of(const PathPiece& piece, const Vector3& axis) {
   return (geometry::end_point(piece) - geometry::start_point(piece)).dot(axis);
 }
@@ -43,6 +53,11 @@ bool is_level(const PrintedMotion& motion, const Vector3& axis) {
   if (const Arc* arc = arc_of(motion)) {
     // In another plane it leaves the level somewhere.
     if (std::abs(std::abs(arc->axis.dot(axis)) - 1) > geometry::kSameDirection) return false;
+  }
+  if (const CubicBezier* cubic = cubic_of(motion)) {
+    return std::ranges::all_of(cubic->control, [&](const geometry::Point3& point) {
+      return std::abs((point - cubic->control[0]).dot(axis)) <= geometry::kSamePlace;
+    });
   }
   return std::abs(rise_of(motion.piece, axis)) <= geometry::kSamePlace;
 }
@@ -56,6 +71,25 @@ bool changes_level(const PrintedMotion& before, const PrintedMotion& after) {
   return false;
 }
 
+// The same of a curve that leaves its level with a kink, or comes to it so. Where it does so
+// without one, it is a curve in space.
+bool leaves_level(const PrintedMotion& before, const PrintedMotion& after) {
+  const Vector3 up = Vector3::UnitZ();
+  const bool curve = cubic_of(before) != nullptr || cubic_of(after) != nullptr;
+  return curve && is_level(before, up) != is_level(after, up);
+}
+
+// mm, to the control point that gives a cubic its direction at one end: the next one that is not
+// there itself.
+double leg_of(const CubicBezier& cubic, bool at_end) {
+  const geometry::Point3* p = cubic.control;
+  for (const int i : {1, 2, 3}) {
+    const double leg = at_end ? (p[3] - p[3 - i]).norm() : (p[i] - p[0]).norm();
+    if (leg > geometry::kSamePlace) return leg;
+  }
+  return geometry::kSamePlace;
+}
+
 double radius_at(const Arc& arc, bool at_end) {
   const Vector3 out = (at_end ? arc.end : arc.start) - arc.center;
   return std::max((out - out.dot(arc.axis) * arc.axis).norm(), geometry::kSamePlace);
@@ -65,6 +99,8 @@ double radius_at(const Arc& arc, bool at_end) {
 // its ends and f of its centre in two axes, sqrt(2) of the printed errors.
 double direction_error(const PrintedMotion& motion, bool at_end, const PrintedErrors& errors) {
   const double e = std::numbers::sqrt2 * errors.place;
+  // Its control points are printed as places, as offsets of no fewer decimals or by coefficients.
+  if (const CubicBezier* cubic = cubic_of(motion)) return 4 * e / leg_of(*cubic, at_end);
   const double f = std::numbers::sqrt2 * errors.center;
   const Vector3 across = geometry::end_point(motion.piece) - geometry::start_point(motion.piece);
   const double chord = std::max(across.norm(), geometry::kSamePlace);
@@ -86,8 +122,7 @@ double direction_error(const PrintedMotion& motion, bool at_end, const PrintedEr
 
 // The least that two segments must be off one curve to meet at this angle.
 double off_by(const PrintedMotion& motion, double turn) {
-  return turn * geometry::length_of(motion.piece) *
-         (arc_of(motion) != nullptr ? kArcOff : kLineOff);
+  return turn * geometry::length_of(motion.piece) * (is_line(motion) ? kLineOff : kArcOff);
 }
 
 class Judge {
@@ -145,8 +180,8 @@ class Judge {
 
   // Between a straight line and other arcs, tangent to both.
   [[nodiscard]] bool is_fillet(std::size_t i) const {
-    const bool behind_line = i > 0 && arc_of(chain_[i - 1]) == nullptr;
-    const bool before_line = i + 1 < chain_.size() && arc_of(chain_[i + 1]) == nullptr;
+    const bool behind_line = i > 0 && is_line(chain_[i - 1]);
+    const bool before_line = i + 1 < chain_.size() && is_line(chain_[i + 1]);
     return (behind_line && joints_[i] == ArcJoint::kTangent) ||
            (before_line && joints_[i + 1] == ArcJoint::kTangent);
   }
@@ -159,12 +194,13 @@ class Judge {
 
 ArcJoint joint_between(const PrintedMotion& before, const PrintedMotion& after,
                        const PrintedErrors& errors, double tolerance) {
-  if (arc_of(before) == nullptr && arc_of(after) == nullptr) return ArcJoint::kNone;
+  if (is_line(before) && is_line(after)) return ArcJoint::kNone;
   if (changes_level(before, after)) return ArcJoint::kCorner;
   const double turn = turn_between(before.piece, after.piece);
   if (turn <= direction_error(before, true, errors) + direction_error(after, false, errors)) {
     return ArcJoint::kTangent;
   }
+  if (leaves_level(before, after)) return ArcJoint::kCorner;
   const bool coarse = std::min(off_by(before, turn), off_by(after, turn)) > kCoarse * tolerance;
   return turn > kCorner || coarse ? ArcJoint::kCorner : ArcJoint::kKink;
 }

@@ -1,5 +1,6 @@
 // Which arcs of a program are intended, and which are segments of a curve that a CAM system could
-// not write otherwise. Method: docs/algorithms/arcs_in_runs.md.
+// not write otherwise; and where arcs and the control's own curves end in corners. Method:
+// docs/algorithms/arcs_in_runs.md.
 #pragma once
 
 #include <span>
@@ -11,7 +12,7 @@ namespace batten::postproc {
 
 // One cutting motion of a chain, as it was printed.
 struct PrintedMotion {
-  geometry::PathPiece piece;  // a Line of some length, or an Arc
+  geometry::PathPiece piece;  // of some length
   bool by_radius = false;     // an arc by R
 };
 
@@ -22,7 +23,7 @@ struct PrintedErrors {
 };
 
 enum class ArcJoint {
-  kNone,     // between two lines: says nothing of arcs
+  kNone,     // between two lines: says nothing of bends
   kTangent,  // as tangent as the printed numbers can tell
   kKink,     // turns by more than that, and by as little as two segments of one curve may
   kCorner,   // an intended turn, or a change from a level cut to a rising one
@@ -36,7 +37,7 @@ struct ChainJudgement {
   // By motion: an intended arc, that is a full circle, or one that meets neither neighbour in a
   // kink, unless it is one of many arcs in a row that mostly meet in kinks.
   std::vector<bool> kept;
-  // By motion: before it is a corner at an arc, where the chain is to be cut.
+  // By motion: before it is a corner at an arc or a curve, where the chain is to be cut.
   std::vector<bool> starts_part;
 };
 

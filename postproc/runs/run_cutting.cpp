@@ -21,11 +21,11 @@ Run part_of(const Run& run, std::size_t first, std::size_t last) {
     return run.points.begin() + static_cast<std::ptrdiff_t>(i);
   };
   part.points.assign(at(first), at(last + 1));
-  for (const RunArc& arc : run.arcs) {
-    if (arc.first < first || arc.last > last) continue;
-    part.arcs.push_back({arc.first - first, arc.last - first, arc.arc, arc.names_motion});
+  for (const RunBend& bend : run.bends) {
+    if (bend.first < first || bend.last > last) continue;
+    part.bends.push_back({bend.first - first, bend.last - first, bend.piece, bend.can_start});
   }
-  if (!part.arcs.empty()) part.chord_error = run.chord_error;
+  if (!part.bends.empty()) part.chord_error = run.chord_error;
   for (const FeedFrom& from : run.feeds) {
     if (from.vertex >= last) break;
     if (from.vertex <= first) part.feeds.clear();
@@ -46,9 +46,9 @@ Run part_of(const Run& run, std::size_t first, std::size_t last) {
 // By vertex: whether the run can be cut there.
 std::vector<bool> cuttable(const Run& run) {
   std::vector<bool> can(run.points.size(), true);
-  for (const RunArc& arc : run.arcs) {
-    if (!arc.names_motion) can[arc.first] = false;
-    for (std::size_t i = arc.first + 1; i < arc.last; ++i) can[i] = false;
+  for (const RunBend& bend : run.bends) {
+    if (!bend.can_start) can[bend.first] = false;
+    for (std::size_t i = bend.first + 1; i < bend.last; ++i) can[i] = false;
   }
   return can;
 }
@@ -102,7 +102,8 @@ std::vector<RunPiece> cut_run(const Section& section, const gcode::Interpretatio
     first_block = last_block + 1;
   };
   for (const std::size_t place : cut_places(run, options)) {
-    if (blocks[place] == blocks[place - 1] + 1) add(place, blocks[place - 1]);
+    const std::uint32_t last = together_with(blocks[place - 1], interpretation).last;
+    if (together_with(blocks[place], interpretation).first == last + 1) add(place, last);
   }
   add(run.points.size() - 1, section.last_block);
   return pieces;

@@ -21,8 +21,8 @@ using gcode::TriState;
 using geometry::Point3;
 namespace reason = gcode::reason;
 
-// The part of the tolerance by which a run's points may miss its arcs, taken off the smoothing's.
-constexpr double kArcShare = 0.03;
+// The part of the tolerance by which a run's points may miss its bends, taken off the smoothing's.
+constexpr double kBendShare = 0.03;
 
 // No coordinate is more than the distance: nearly always the first one that differs decides.
 bool is_one_place(const Point3& a, const Point3& b) {
@@ -33,6 +33,10 @@ bool is_one_place(const Point3& a, const Point3& b) {
 }
 
 bool has_length(const gcode::MotionPath& path) {
+  if (const geometry::CubicBezier* cubic = path.cubic()) {
+    return std::ranges::any_of(
+        cubic->control, [&](const Point3& point) { return !is_one_place(path.start(), point); });
+  }
   return path.arc() != nullptr || !is_one_place(path.start(), path.end());
 }
 
@@ -83,6 +87,16 @@ std::string_view unknown_state(ModalState state) {
   return is_known(state) ? reason::kUnitsUnknown : reason::kStateUnknown;
 }
 
+// A line or a cubic piece at one height.
+bool is_level(const gcode::MotionPath& path) {
+  const auto is_as_high = [&](const Point3& point) {
+    return std::abs(point.z() - path.start().z()) <= geometry::kSamePlace;
+  };
+  const geometry::CubicBezier* cubic = path.cubic();
+  return cubic != nullptr ? std::ranges::all_of(cubic->control, is_as_high)
+                          : is_as_high(path.end());
+}
+
 class RunGrouper {
  public:
   RunGrouper(const gcode::Program& program, const gcode::Interpretation& read,
@@ -95,11 +109,13 @@ class RunGrouper {
     for (std::uint32_t i = 0; i < read_.blocks.size(); ++i) {
       if (!cuts_.empty() && cuts_.front() == i) start_anew(i);
       const BlockMeaning& block = read_.blocks[i];
-      if (!block.barrier.empty() && !is_plain_arc(block)) {
+      if (!block.barrier.empty() && !is_plain_arc(block) && !block.of_curve) {
         close_chain();
         keep_up_to(i, block.barrier);
       } else if (block.motion >= 0) {
         take_motion(i, blocks_.motion(i));
+      } else if (block.of_curve) {
+        keep_if_unsafe(i);
       } else if (chain_.empty()) {
         keep_idle(i);
       }
@@ -131,10 +147,18 @@ class RunGrouper {
     keep_up_to(i, why);
   }
 
-  // Intended arcs are copied, and the chain is cut there and at corners beside arcs.
+  // A block of a curve that has no motion of its own goes with those that have: their state is its.
+  void keep_if_unsafe(std::uint32_t i) {
+    const std::string_view why = states_.reason(read_.blocks[i].state_after);
+    if (why.empty()) return;
+    close_chain();
+    keep_up_to(i, why);
+  }
+
+  // Intended arcs are copied, and the chain is cut there and at corners beside arcs and curves.
   void close_chain() {
-    const auto is_arc = [this](std::uint32_t block) { return blocks_.arc(block) != nullptr; };
-    if (std::ranges::none_of(chain_, is_arc)) return close_section();
+    const auto is_bend = [this](std::uint32_t block) { return blocks_.is_bend(block); };
+    if (std::ranges::none_of(chain_, is_bend)) return close_section();
     const std::vector<std::uint32_t> whole = std::exchange(chain_, {});
     std::vector<PrintedMotion> moving;
     for (const std::uint32_t block : whole) {
@@ -149,7 +173,7 @@ class RunGrouper {
         continue;
       }
       const std::size_t i = next++;
-      if (judged.starts_part[i] && can_start(block)) close_section();
+      if (judged.starts_part[i] && blocks_.can_start(block)) close_section();
       if (judged.kept[i]) {
         close_section();
         keep_up_to(block, reason::kIntendedArc);
@@ -158,11 +182,6 @@ class RunGrouper {
       }
     }
     close_section();
-  }
-
-  // An arc that takes its G2 or G3 from the block before it stays with it.
-  bool can_start(std::uint32_t block) const {
-    return blocks_.arc(block) == nullptr || blocks_.names_motion(block);
   }
 
   // Plunge or retract: the corner where it meets the cut is intentional, and rounding it would tilt
@@ -187,8 +206,10 @@ class RunGrouper {
   std::size_t end_of_plunge(const std::vector<std::uint32_t>& chain, std::size_t begin) const {
     using Heading = RunBlocks::Heading;
     const auto flat = [&](std::size_t k) { return blocks_.heading(chain[k]) == Heading::kInPlane; };
+    // Of a curve no piece is taken for itself, of no length either.
     const auto along_z = [&](std::size_t k) {
-      return !blocks_.moves(chain[k]) || blocks_.heading(chain[k]) == Heading::kAlongZ;
+      if (blocks_.moves(chain[k])) return blocks_.heading(chain[k]) == Heading::kAlongZ;
+      return !read_.blocks[chain[k]].of_curve;
     };
     std::size_t end = begin;
     while (end < chain.size() && along_z(end)) ++end;
@@ -200,31 +221,58 @@ class RunGrouper {
   }
 
   // Motions of no length at the ends of a chain say nothing about its path: they are copied. So are
-  // arcs at its end whose G2 or G3 is needed after it.
+  // arcs and curves at its end whose motion word is needed after it.
   void close_part() {
     if (chain_.empty()) return;
     const auto moving = [this](std::uint32_t block) { return blocks_.moves(block); };
-    const auto may_end = [this](std::uint32_t block) {
-      return blocks_.moves(block) && !blocks_.lends_arc_word(block);
-    };
-    const auto first = std::find_if(chain_.begin(), chain_.end(), moving);
-    const auto last = std::find_if(chain_.rbegin(), chain_.rend(), may_end).base();
-    const auto count = first < last ? std::count_if(first, last, moving) : 0;
-    if (count == 0 || static_cast<std::size_t>(count) < options_.min_motions) {
-      keep_up_to(chain_.back(), reason::kTooShort);
+    const auto first = std::find_if(chain_.cbegin(), chain_.cend(), moving);
+    const auto last = end_of_run();
+    const std::uint32_t end = together_with(chain_.back(), read_).last;
+    if (first >= last || is_too_short({first, last})) {
+      keep_up_to(end, is_too_short({first, chain_.cend()}) ? reason::kTooShort : why_kept(*last));
     } else {
-      if (first != chain_.begin()) keep_up_to(*first - 1, reason::kTooShort);
+      const std::uint32_t begin = together_with(*first, read_).first;
+      if (chain_.front() < begin) keep_up_to(begin - 1, reason::kTooShort);
       add_run({first, last});
-      if (last != chain_.end()) {
-        keep_up_to(chain_.back(), blocks_.moves(*last) ? reason::kArc : reason::kTooShort);
-      }
+      if (done_ <= end) keep_up_to(end, why_kept(*last));
     }
     chain_.clear();
   }
 
+  // After the last motion with which a run may end: one that moves, and whose word, or that of its
+  // curve, nobody needs.
+  [[nodiscard]] std::vector<std::uint32_t>::const_iterator end_of_run() const {
+    auto last = chain_.cend();
+    while (last != chain_.cbegin()) {
+      const std::uint32_t block = *(last - 1);
+      if (!blocks_.moves(block)) {
+        --last;
+        continue;
+      }
+      if (!blocks_.lends_motion_word(block)) break;
+      const std::uint32_t first = together_with(block, read_).first;
+      while (last != chain_.cbegin() && *(last - 1) >= first) --last;
+    }
+    return last;
+  }
+
+  [[nodiscard]] bool is_too_short(std::span<const std::uint32_t> blocks) const {
+    const auto moving = [this](std::uint32_t block) { return blocks_.moves(block); };
+    const auto count = static_cast<std::size_t>(std::ranges::count_if(blocks, moving));
+    return count == 0 || count < options_.min_motions;
+  }
+
+  // What follows the end of a run and could not be in it.
+  [[nodiscard]] std::string_view why_kept(std::uint32_t block) const {
+    if (!blocks_.moves(block)) return reason::kTooShort;
+    return read_.blocks[block].of_curve ? reason::kSpline : reason::kArc;
+  }
+
   void add_run(std::span<const std::uint32_t> blocks) {
-    if (done_ < blocks.front()) keep_up_to(blocks.front() - 1, reason::kComment);
-    add({blocks.front(), blocks.back(), blocks_.run_of(blocks, kArcShare * options_.tolerance_mm)});
+    const std::uint32_t first = together_with(blocks.front(), read_).first;
+    const std::uint32_t last = together_with(blocks.back(), read_).last;
+    if (done_ < first) keep_up_to(first - 1, reason::kComment);
+    add({first, last, blocks_.run_of(blocks, kBendShare * options_.tolerance_mm)});
   }
 
   void add(Section section) {
@@ -302,23 +350,39 @@ std::string_view UnsafeStates::reason(std::uint32_t state) {
   return answer_;
 }
 
+BlockRange together_with(std::uint32_t block, const gcode::Interpretation& read) {
+  BlockRange range{block, block};
+  if (!read.blocks[block].of_curve) return range;
+  while (!read.blocks[range.first].begins_curve) --range.first;
+  const auto goes_on = [&](std::uint32_t next) {
+    return next < read.blocks.size() && read.blocks[next].of_curve &&
+           !read.blocks[next].begins_curve;
+  };
+  while (goes_on(range.last + 1)) ++range.last;
+  return range;
+}
+
 std::vector<std::uint32_t> blocks_of_edges(const Section& section,
                                            const gcode::Interpretation& read) {
   const Run& run = std::get<Run>(section.content);
   std::vector<std::uint32_t> of_edges;
   of_edges.reserve(run.points.size());
-  auto arc = run.arcs.begin();
+  auto bend = run.bends.begin();
   for (std::uint32_t block = section.first_block; block <= section.last_block; ++block) {
     const std::int32_t motion = read.blocks[block].motion;
     if (motion < 0 || !has_length(read.motions[static_cast<std::size_t>(motion)].piece)) continue;
-    const bool is_arc = arc != run.arcs.end() && arc->first == of_edges.size();
-    of_edges.insert(of_edges.end(), is_arc ? arc->last - arc->first : 1, block);
-    if (is_arc) ++arc;
+    const bool is_bend = bend != run.bends.end() && bend->first == of_edges.size();
+    of_edges.insert(of_edges.end(), is_bend ? bend->last - bend->first : 1, block);
+    if (is_bend) ++bend;
   }
   return of_edges;
 }
 
 const geometry::Arc* RunBlocks::arc(std::uint32_t block) const { return motion(block).piece.arc(); }
+
+bool RunBlocks::is_bend(std::uint32_t block) const {
+  return arc(block) != nullptr || read_.blocks[block].of_curve;
+}
 
 bool RunBlocks::moves(std::uint32_t block) const { return has_length(motion(block).piece); }
 
@@ -330,29 +394,47 @@ RunBlocks::Heading RunBlocks::heading(std::uint32_t block) const {
     const bool about_z = std::abs(bend->axis.z()) > 1 - geometry::kSameDirection;
     return about_z && !along ? Heading::kInPlane : Heading::kOther;
   }
+  if (read_.blocks[block].of_curve) {
+    return is_level(path) ? Heading::kInPlane : Heading::kOther;
+  }
   const bool across = way.head<2>().cwiseAbs().maxCoeff() > geometry::kSamePlace;
   if (along && !across) return Heading::kAlongZ;
   return across && !along ? Heading::kInPlane : Heading::kOther;
 }
 
 bool RunBlocks::names_motion(std::uint32_t block) const {
+  if (read_.blocks[block].begins_curve) return true;
   const gcode::BlockWords words(program_.words_of(program_.blocks[block]));
   return words.has_group(gcode::CodeGroup::kMotion);
+}
+
+bool RunBlocks::can_start(std::uint32_t block) const {
+  if (!read_.blocks[block].of_curve) return arc(block) == nullptr || names_motion(block);
+  while (!read_.blocks[block].begins_curve) {
+    if (read_.blocks[--block].motion >= 0) return false;
+  }
+  return true;
 }
 
 bool RunBlocks::says_speed(std::uint32_t block) const {
   return gcode::BlockWords(program_.words_of(program_.blocks[block])).has('S');
 }
 
-bool RunBlocks::lends_arc_word(std::uint32_t block) const {
+bool RunBlocks::lends_motion_word(std::uint32_t block) const {
   const MotionMode mode = read_.states[read_.blocks[block].state_after].motion;
-  if (!gcode::is_arc(mode)) return false;
-  for (std::uint32_t i = block + 1; i < read_.blocks.size(); ++i) {
+  if (!gcode::is_arc(mode) && mode != MotionMode::kOther) return false;
+  for (std::uint32_t i = together_with(block, read_).last + 1; i < read_.blocks.size(); ++i) {
     if (read_.blocks[i].kind == gcode::BlockKind::kEmpty) continue;
-    if (names_motion(i)) return false;
+    if (names_motion(i)) return mode == MotionMode::kOther && goes_on_as_curve(i);
     if (!says_only_functions(i)) return true;
   }
   return false;
+}
+
+// A curve that is not read may go on from the one before it: G5 without I and J.
+bool RunBlocks::goes_on_as_curve(std::uint32_t block) const {
+  return !read_.blocks[block].of_curve &&
+         read_.states[read_.blocks[block].state_after].motion == MotionMode::kOther;
 }
 
 // M, S, T words and the like: they do the same in any motion mode.
@@ -379,12 +461,16 @@ PrintedErrors RunBlocks::errors_of(std::span<const std::uint32_t> blocks) const 
   int of_places = 0;
   int of_centers = 0;
   for (const std::uint32_t block : blocks) {
-    of_places = std::max(of_places, decimals(block, "XYZ"));
+    of_places = std::max(of_places, decimals_of_places(block));
     of_centers = std::max(of_centers, decimals(block, "IJKR"));
   }
   const gcode::ModalState& state = read_.states[read_.blocks[blocks.front()].state_after];
   const double unit = gcode::millimetres_per(state.units);
   return {unit / 2 * std::pow(10.0, -of_places), unit / 2 * std::pow(10.0, -of_centers)};
+}
+
+int RunBlocks::decimals_of_places(std::uint32_t block) const {
+  return read_.blocks[block].of_curve ? motion(block).curve_decimals : decimals(block, "XYZ");
 }
 
 // Most digits after the point among the block's words of these letters.
@@ -401,24 +487,33 @@ int RunBlocks::decimals(std::uint32_t block, std::string_view letters) const {
 
 Run RunBlocks::run_of(std::span<const std::uint32_t> blocks, double max_chord_error) const {
   Run run;
-  run.state = blocks.front() == 0 ? 0 : read_.blocks[blocks.front() - 1].state_after;
+  const std::uint32_t begin = together_with(blocks.front(), read_).first;
+  const std::uint32_t end = together_with(blocks.back(), read_).last;
+  run.state = begin == 0 ? 0 : read_.blocks[begin - 1].state_after;
   run.decimals = 0;
   gcode::reserve_in_large_pages(run.points, blocks.size() + 1);
   run.points.push_back(motion(blocks.front()).piece.start());
   std::size_t next = 0;
-  std::size_t placed = 0;  // comments whose vertex is known: that of the next block that moves
-  for (std::uint32_t i = blocks.front(); i <= blocks.back(); ++i) {
-    for (const gcode::Comment& comment : program_.comments_of(program_.blocks[i])) {
-      run.comments.push_back({0, comment.span, blocks[next] == i});
-    }
-    if (blocks[next] != i) continue;
-    ++next;
-    if (!moves(i)) continue;  // its feed is still there at the next motion that moves
-    add_motion(i, max_chord_error, run);
+  // Comments whose vertex is known: that of the next block that moves, the last one where none
+  // does.
+  std::size_t placed = 0;
+  const auto place_comments = [&] {
     for (; placed < run.comments.size(); ++placed) {
       run.comments[placed].vertex = run.points.size() - 1;
     }
+  };
+  for (std::uint32_t i = begin; i <= end; ++i) {
+    const bool has_motion = next < blocks.size() && blocks[next] == i;
+    for (const gcode::Comment& comment : program_.comments_of(program_.blocks[i])) {
+      run.comments.push_back({0, comment.span, has_motion});
+    }
+    if (!has_motion) continue;
+    ++next;
+    if (!moves(i)) continue;  // its feed is still there at the next motion that moves
+    add_motion(i, max_chord_error, run);
+    place_comments();
   }
+  place_comments();
   run.closed = is_one_place(run.points.front(), run.points.back());
   return run;
 }
@@ -428,10 +523,10 @@ void RunBlocks::add_motion(std::uint32_t block, double max_chord_error, Run& run
   if (run.feeds.empty() || run.feeds.back().feed != feed) {
     run.feeds.push_back({run.points.size() - 1, feed});
   }
-  run.decimals = std::max(run.decimals, decimals(block, "XYZ"));
+  run.decimals = std::max(run.decimals, decimals_of_places(block));
   if (says_speed(block)) run.speed_words.push_back(run.points.size() - 1);
-  if (const geometry::Arc* bend = arc(block)) {
-    append_arc(*bend, names_motion(block), max_chord_error, run);
+  if (is_bend(block)) {
+    append_bend(motion(block).piece, can_start(block), max_chord_error, run);
   } else {
     run.points.push_back(motion(block).piece.end());
   }

@@ -1,5 +1,6 @@
-// Chains of G01, and of G02 and G03 that are pieces of a curve, with unchanged state become runs;
-// everything else is copied, with a reason. And what the blocks of a program are to a run.
+// Chains of G01, of G02 and G03 that are pieces of a curve, and of the control's own curves, with
+// unchanged state become runs; everything else is copied, with a reason. And what the blocks of a
+// program are to a run.
 #pragma once
 
 #include <cstdint>
@@ -55,6 +56,15 @@ class UnsafeStates {
   std::string_view answer_;
 };
 
+// Blocks that are rewritten together or not at all, both inclusive.
+struct BlockRange {
+  std::uint32_t first = 0;
+  std::uint32_t last = 0;
+};
+
+// All that say one curve with this block; the block alone where it says none.
+[[nodiscard]] BlockRange together_with(std::uint32_t block, const gcode::Interpretation& read);
+
 // For every edge between two points of a run the block whose motion it belongs to.
 [[nodiscard]] std::vector<std::uint32_t> blocks_of_edges(const Section& section,
                                                          const gcode::Interpretation& read);
@@ -72,20 +82,25 @@ class RunBlocks {
   }
   // nullptr where it is no arc.
   [[nodiscard]] const geometry::Arc* arc(std::uint32_t block) const;
+  [[nodiscard]] bool is_bend(std::uint32_t block) const;  // an arc, or a piece of a curve
   [[nodiscard]] bool moves(std::uint32_t block) const;
 
-  // Whether a block moves straight along Z, in the plane across it, or neither.
+  // Whether a block moves straight along Z, in the plane across it, or neither. Pieces of a curve
+  // never move along Z: a plunge is a block of its own.
   enum class Heading { kAlongZ, kInPlane, kOther };
   [[nodiscard]] Heading heading(std::uint32_t block) const;
 
-  // Whether it says G0, G1, G2 .. itself.
+  // Whether it says G0, G1, G2 .. itself, or begins a curve.
   [[nodiscard]] bool names_motion(std::uint32_t block) const;
+  // Whether a run may begin with its motion: an arc that says its word, the first piece of a curve,
+  // any line that is none.
+  [[nodiscard]] bool can_start(std::uint32_t block) const;
   // A speed of the spindle, be it the one that holds.
   [[nodiscard]] bool says_speed(std::uint32_t block) const;
 
-  // Whether a later block takes G2 or G3 from this one. Controls refuse a bare G2: it cannot be
-  // said again.
-  [[nodiscard]] bool lends_arc_word(std::uint32_t block) const;
+  // Whether a later block takes G2 or G3 from this one, or the word of its curve, or may go on from
+  // the curve. Controls refuse a bare G2: it cannot be said again.
+  [[nodiscard]] bool lends_motion_word(std::uint32_t block) const;
 
   [[nodiscard]] PrintedMotion printed(std::uint32_t block) const;
   // As many digits as any of these blocks prints are right.
@@ -95,7 +110,9 @@ class RunBlocks {
   [[nodiscard]] Run run_of(std::span<const std::uint32_t> blocks, double max_chord_error) const;
 
  private:
+  [[nodiscard]] int decimals_of_places(std::uint32_t block) const;
   [[nodiscard]] int decimals(std::uint32_t block, std::string_view letters) const;
+  [[nodiscard]] bool goes_on_as_curve(std::uint32_t block) const;
   [[nodiscard]] bool says_only_functions(std::uint32_t block) const;
   void add_motion(std::uint32_t block, double max_chord_error, Run& run) const;
 

@@ -23,11 +23,11 @@ constexpr double kFromCurvature = 1.0 / 174;
 // At its ends it is k' l^2 / 12 off in direction. Two arcs share the kink a between them: a l / 29.
 constexpr double kFromKink = 6.0 / 174;
 
-PathPiece part_of(const RunArc& arc, std::size_t first, std::size_t last) {
-  if (first == arc.first && last == arc.last) return arc.arc;
-  const auto steps = static_cast<double>(arc.last - arc.first);
-  return geometry::sub_piece(arc.arc, static_cast<double>(first - arc.first) / steps,
-                             static_cast<double>(last - arc.first) / steps);
+PathPiece part_of(const RunBend& bend, std::size_t first, std::size_t last) {
+  if (first == bend.first && last == bend.last) return bend.piece;
+  const auto steps = static_cast<double>(bend.last - bend.first);
+  return geometry::sub_piece(bend.piece, static_cast<double>(first - bend.first) / steps,
+                             static_cast<double>(last - bend.first) / steps);
 }
 
 // Towards the centre of curvature, 1/mm long.
@@ -44,18 +44,24 @@ Vector3 curvature_vector(const PathPiece& piece, double t) {
 // Calls `take(piece, first vertex)` for each motion in order.
 template <class Take>
 void for_each_motion(const Run& run, std::size_t at, std::size_t last, const Take& take) {
-  auto arc = std::ranges::lower_bound(run.arcs, at, {}, &RunArc::last);
+  auto bend = std::ranges::lower_bound(run.bends, at, {}, &RunBend::last);
   while (at < last) {
     const std::size_t first = at;
-    while (arc != run.arcs.end() && arc->last <= first) ++arc;
-    if (arc == run.arcs.end() || first < arc->first) {
+    while (bend != run.bends.end() && bend->last <= first) ++bend;
+    if (bend == run.bends.end() || first < bend->first) {
       ++at;
       take(Line{run.points[first], run.points[at]}, first);
     } else {
-      at = std::min(arc->last, last);
-      take(part_of(*arc, first, at), first);
+      at = std::min(bend->last, last);
+      take(part_of(*bend, first, at), first);
     }
   }
+}
+
+// A piece of a curve says itself how it bends; what stands beside it says nothing of how far an arc
+// is off.
+bool is_cubic(const PathPiece& piece) {
+  return std::holds_alternative<geometry::CubicBezier>(piece);
 }
 
 // What two neighbouring motions say about the curve that they stand for.
@@ -83,25 +89,26 @@ double scatter_of(double l, const std::optional<JointSteps>& before,
 
 }  // namespace
 
-void append_arc(const Arc& arc, bool names_motion, double max_chord_error, Run& run) {
-  // Linear interpolation over 1/n of the arc is off by at most this over n^2.
-  const double whole = geometry::second_derivative_bound(arc) / 8;
+void append_bend(const PathPiece& piece, bool can_start, double max_chord_error, Run& run) {
+  // Linear interpolation over 1/n of the piece is off by at most this over n^2.
+  const double whole = geometry::second_derivative_bound(piece) / 8;
   const auto wanted = static_cast<std::size_t>(std::ceil(std::sqrt(whole / max_chord_error)));
-  const std::size_t chords = std::max(wanted, kLeastChords);
+  const bool straight = std::holds_alternative<Line>(piece);
+  const std::size_t chords = std::max(wanted, straight ? 1 : kLeastChords);
   const std::size_t first = run.points.size() - 1;
   for (std::size_t i = 1; i < chords; ++i) {
     run.points.push_back(
-        geometry::point_at(arc, static_cast<double>(i) / static_cast<double>(chords)));
+        geometry::point_at(piece, static_cast<double>(i) / static_cast<double>(chords)));
   }
-  run.points.push_back(arc.end);
-  run.arcs.push_back({first, first + chords, arc, names_motion});
+  run.points.push_back(geometry::end_point(piece));
+  run.bends.push_back({first, first + chords, piece, can_start});
   run.chord_error = std::max(run.chord_error,
                              whole / (static_cast<double>(chords) * static_cast<double>(chords)));
 }
 
 std::size_t motion_count(const Run& run) {
   std::size_t count = run.points.size() - 1;
-  for (const RunArc& arc : run.arcs) count -= arc.last - arc.first - 1;
+  for (const RunBend& bend : run.bends) count -= bend.last - bend.first - 1;
   return count;
 }
 
@@ -121,7 +128,7 @@ double turn_between(const PathPiece& before, const PathPiece& after) {
 }
 
 double arc_scatter(const Run& run) {
-  if (run.arcs.empty()) return 0;
+  if (run.bends.empty()) return 0;
   const std::vector<RunMotion> motions = motions_between(run, 0, run.points.size() - 1);
   double squares = 0;
   double length = 0;
@@ -129,7 +136,9 @@ double arc_scatter(const Run& run) {
   for (std::size_t i = 0; i < motions.size(); ++i) {
     const PathPiece& piece = motions[i].piece;
     std::optional<JointSteps> after;
-    if (i + 1 < motions.size()) after = steps_between(piece, motions[i + 1].piece);
+    if (i + 1 < motions.size() && !is_cubic(piece) && !is_cubic(motions[i + 1].piece)) {
+      after = steps_between(piece, motions[i + 1].piece);
+    }
     const double l = geometry::length_of(piece);
     length += l;
     if (std::holds_alternative<Arc>(piece)) {

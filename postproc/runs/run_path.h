@@ -12,9 +12,11 @@
 
 namespace batten::postproc {
 
-// Appends an arc to the run, whose points hold at least its start. Chords between its vertices
-// leave it by at most `max_chord_error` (mm, > 0); at least four, so that the path bends evenly.
-void append_arc(const geometry::Arc& arc, bool names_motion, double max_chord_error, Run& run);
+// Appends an arc or a piece of a curve to the run, whose points hold at least its start. Chords
+// between its vertices leave it by at most `max_chord_error` (mm, > 0); at least four, so that the
+// path bends evenly, but for a piece that is a line: that is one.
+void append_bend(const geometry::PathPiece& piece, bool can_start, double max_chord_error,
+                 Run& run);
 
 [[nodiscard]] std::size_t motion_count(const Run& run);
 
@@ -23,7 +25,7 @@ struct RunMotion {
   std::size_t first = 0;  // vertex where it starts
 };
 
-// The exact path between two vertices, motion by motion: of an arc that a vertex cuts, the part.
+// The exact path between two vertices, motion by motion: of a bend that a vertex cuts, the part.
 [[nodiscard]] std::vector<RunMotion> motions_between(const Run& run, std::size_t first,
                                                      std::size_t last);
 

@@ -33,27 +33,30 @@ struct CommentAt {
   bool behind_words = false;  // of the block, not on a line of its own
 };
 
-// A motion of the run that is an arc. The points from `first` to `last` lie on it, at even steps of
-// its parameter; those between them are no ends of motions.
-struct RunArc {
+// A motion of the run that is an arc or belongs to a curve. The points from `first` to `last` lie
+// on it, at even steps of its parameter; those between them are no ends of motions.
+struct RunBend {
   std::size_t first = 0;  // vertices
   std::size_t last = 0;
-  geometry::Arc arc;
-  bool names_motion = true;  // its block says G2 or G3 itself
+  geometry::PathPiece piece;  // a Line only in a curve
+  // A run may begin with it: its block says G2 or G3 itself, or begins the curve.
+  bool can_start = true;
 };
 
-// A chain of cutting moves, lines and arcs, with unchanged state that may be rewritten together.
-// Its first and last block are motions of some length; between them may be motions of no length,
-// lines that change only the feed or nothing, comments and empty lines. No block after it takes G2
-// or G3 from it. Axes whose position is not known are 0 in all points: no block of it names them.
+// A chain of cutting moves, lines, arcs and curves, with unchanged state that may be rewritten
+// together. Its first and last block are motions of some length, or belong to one curve with such a
+// motion: blocks that say a curve together are all in the run. Between them may be motions of no
+// length, lines that change only the feed or nothing, comments and empty lines. No block after it
+// takes its motion word from an arc or a curve of it. Axes whose position is not known are 0 in all
+// points: no block of it names them.
 struct Run {
-  std::vector<geometry::Point3> points;  // mm: start and end of every motion, and some of arcs
-  std::vector<RunArc> arcs;              // in order
-  double chord_error = 0;                // mm: no arc leaves the chords of its points by more
+  std::vector<geometry::Point3> points;  // mm: start and end of every motion, and some of bends
+  std::vector<RunBend> bends;            // in order
+  double chord_error = 0;                // mm: no bend leaves the chords of its points by more
   std::vector<FeedFrom> feeds;           // each differs from the one before it; at ends of motions
   std::vector<CommentAt> comments;
   std::vector<std::size_t> speed_words;  // vertices: the block of the motion from there says S
-  int decimals = 3;  // most digits after the point of its X, Y, Z words: 4 of X.1234 in inches
+  int decimals = 3;         // most digits after the point of its places: 4 of X.1234 in inches
   std::uint32_t state = 0;  // Interpretation::states before its first block
   bool closed = false;      // first and last point are one position
 };

@@ -271,7 +271,7 @@ class CurveForms {
   [[nodiscard]] bool arcs_may_serve() const {
     const std::size_t vertices = task_.run.points.size();
     const bool choosing = task_.scope != CandidateScope::kAll &&
-                          task_.options.output == Form::kAuto && task_.run.arcs.empty();
+                          task_.options.output == Form::kAuto && task_.run.bends.empty();
     if (!choosing || vertices < kFormTuning.tried_from) return true;
     for (const double part : kFormTuning.tried_at) {
       const auto first = static_cast<std::size_t>(part * static_cast<double>(vertices));
@@ -299,7 +299,7 @@ class CurveForms {
   void offer_arc_splines() {
     const bool cut = task_.options.target->chords.any();  // arcs along the curve have less room
     const bool few = wants_few_moves(task_.options);
-    if (one_sided_ || !(few || cut || !task_.run.arcs.empty())) return;
+    if (one_sided_ || !(few || cut || !task_.run.bends.empty())) return;
     const double whole = left_ + curve_.path.deviation;
     for (const double part : kFormTuning.bands) {
       PlanOptions band = arcs_within(part * whole, whole);
@@ -308,7 +308,7 @@ class CurveForms {
                                       gcode::usual_chord_error(task_.options.target->chords));
       if (few) band.arc_effort = geometry::ArcEffort::kThorough;
       offers_.push_back({Form::kArcs, 0, 0, band, true});
-      if (task_.run.arcs.empty()) return;
+      if (task_.run.bends.empty()) return;
     }
   }
 

@@ -37,18 +37,30 @@ void translate(geometry::PathPiece& piece, const Vector3& offset) {
   }
 }
 
-bool is_same_arc(const RunArc& a, const RunArc& b, const Vector3& offset) {
-  return a.first == b.first && a.last == b.last && a.names_motion == b.names_motion &&
-         is_same(a.arc.center + offset, b.arc.center) && a.arc.axis == b.arc.axis &&
-         is_same(a.arc.sweep, b.arc.sweep);
+bool is_same_piece(const PathPiece& a, const PathPiece& b, const Vector3& offset) {
+  if (a.index() != b.index()) return false;
+  if (const auto* arc = std::get_if<geometry::Arc>(&a)) {
+    const auto& other = std::get<geometry::Arc>(b);
+    return is_same(arc->center + offset, other.center) && arc->axis == other.axis &&
+           is_same(arc->sweep, other.sweep);
+  }
+  const auto* cubic = std::get_if<geometry::CubicBezier>(&a);
+  return cubic == nullptr ||
+         std::ranges::equal(
+             cubic->control, std::get<geometry::CubicBezier>(b).control,
+             [&](const Point3& p, const Point3& q) { return is_same(p + offset, q); });
+}
+
+bool is_same_bend(const RunBend& a, const RunBend& b, const Vector3& offset) {
+  return a.first == b.first && a.last == b.last && a.can_start == b.can_start &&
+         is_same_piece(a.piece, b.piece, offset);
 }
 
 bool are_same_moves(std::span<const TimedPiece> a, std::span<const TimedPiece> b,
                     const Vector3& offset) {
   return std::ranges::equal(a, b, [&](const TimedPiece& one, const TimedPiece& other) {
     return one.feed == other.feed && one.rapid == other.rapid &&
-           one.says_speed == other.says_speed &&
-           one.piece.index() == other.piece.index() &&
+           one.says_speed == other.says_speed && one.piece.index() == other.piece.index() &&
            is_same(geometry::start_point(one.piece) + offset, geometry::start_point(other.piece)) &&
            is_same(geometry::point_at(one.piece, 0.5) + offset,
                    geometry::point_at(other.piece, 0.5)) &&
@@ -96,7 +108,7 @@ std::optional<Vector3> offset_of_repeat(RunInContext first, RunInContext run,
   const RunContext& before = *first.context;
   const RunContext& now = *run.context;
   if (!may_repeat(first) || !may_repeat(run) || a.points.size() != b.points.size() ||
-      a.arcs.size() != b.arcs.size() || a.decimals != b.decimals || a.closed != b.closed ||
+      a.bends.size() != b.bends.size() || a.decimals != b.decimals || a.closed != b.closed ||
       !is_same_state(before.before, now.before) || !is_same_state(before.after, now.after) ||
       before.numbers.first.has_value() != now.numbers.first.has_value()) {
     return std::nullopt;
@@ -109,17 +121,18 @@ std::optional<Vector3> offset_of_repeat(RunInContext first, RunInContext run,
   };
   const bool same =
       is_step(offset.x()) && is_step(offset.y()) && is_step(offset.z()) &&
-      std::ranges::equal(a.points, b.points,
-                         [&](const Point3& p, const Point3& q) { return is_same(p + offset, q); }) &&
-      std::ranges::equal(a.arcs, b.arcs,
-                         [&](const RunArc& p, const RunArc& q) {
-                           return is_same_arc(p, q, offset);
-                         }) &&
+      std::ranges::equal(
+          a.points, b.points,
+          [&](const Point3& p, const Point3& q) { return is_same(p + offset, q); }) &&
+      std::ranges::equal(
+          a.bends, b.bends,
+          [&](const RunBend& p, const RunBend& q) { return is_same_bend(p, q, offset); }) &&
       std::ranges::equal(a.feeds, b.feeds,
                          [](const FeedFrom& p, const FeedFrom& q) {
                            return p.vertex == q.vertex && p.feed == q.feed;
                          }) &&
-      a.speed_words == b.speed_words && are_same_moves(before.lead, now.lead, offset) && are_same_moves(before.tail, now.tail, offset);
+      a.speed_words == b.speed_words && are_same_moves(before.lead, now.lead, offset) &&
+      are_same_moves(before.tail, now.tail, offset);
   return same ? std::optional(offset) : std::nullopt;
 }
 

@@ -229,13 +229,21 @@ double printed_rms(const SmoothOptions& options, gcode::Units units) {
   return step / std::sqrt(12);
 }
 
+Form form_of(const Run& run) {
+  const bool curves = std::ranges::any_of(run.bends, [](const RunBend& bend) {
+    return std::holds_alternative<geometry::CubicBezier>(bend.piece);
+  });
+  if (curves) return Form::kCurves;
+  return run.bends.empty() ? Form::kLines : Form::kArcs;
+}
+
 RunFacts facts_of(const Run& run, const RunContext& context, const SmoothOptions& options,
                   const RunTimes& times) {
   const std::vector<TimedPiece> motions = timed_pieces(run, 0, run.points.size() - 1);
   RunFacts facts;
   for (const TimedPiece& motion : motions) facts.length += geometry::length_of(motion.piece);
   facts.max_curvature = greatest_curvature(run.points);
-  facts.form = run.arcs.empty() ? Form::kLines : Form::kArcs;
+  facts.form = form_of(run);
   CostScale& scale = facts.scale;
   scale.original.blocks = static_cast<double>(context.blocks);
   scale.original.bytes = static_cast<double>(context.bytes);
@@ -265,7 +273,7 @@ SmoothedRun smooth_run(const Run& run, const RunContext& context, const SmoothOp
     return result;
   }
   ToleranceShares shares = share_tolerance(options, context.before.units, run.decimals);
-  shares.smoothing -= run.chord_error;  // the points are not quite where the arcs are
+  shares.smoothing -= run.chord_error;  // the points are not quite where the bends are
   if (!(shares.smoothing > 0)) {
     result.reason = gcode::reason::kNoFit;
     return result;

@@ -38,13 +38,13 @@ class SegmentTally {
     const Run& run = std::get<Run>(section.content);
     const std::vector<std::uint32_t> blocks = blocks_of_edges(section, read.meaning);
     if (lengths_.empty()) gcode::reserve_in_large_pages(lengths_, run.points.size());
-    auto arc = run.arcs.begin();
+    auto bend = run.bends.begin();
     for (std::size_t i = 0; i + 1 < run.points.size();) {
       const std::uint32_t line = read.program.blocks[blocks[i]].line;
-      if (arc != run.arcs.end() && arc->first == i) {
-        add_segment(geometry::length_of(arc->arc), geometry::direction_at(arc->arc, 0),
-                    geometry::direction_at(arc->arc, 1), line);
-        i = arc++->last;
+      if (bend != run.bends.end() && bend->first == i) {
+        add_segment(geometry::length_of(bend->piece), geometry::direction_at(bend->piece, 0),
+                    geometry::direction_at(bend->piece, 1), line);
+        i = bend++->last;
       } else {
         const Vector3 along = run.points[i + 1] - run.points[i];
         const double length = along.norm();

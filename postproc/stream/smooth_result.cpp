@@ -109,6 +109,7 @@ class Reporter {
     r.points = motion_count(std::get<Run>(section.content)) + 1;
     r.blocks_in = work.context.blocks;
     r.blocks_out = chosen != nullptr ? chosen->text.blocks : work.context.blocks;
+    r.had_curves = facts.form == Form::kCurves;
     const Figures& before = facts.scale.original;
     const Figures& after = chosen != nullptr ? chosen->figures : before;
     r.bytes_in = work.context.bytes;
@@ -301,7 +302,7 @@ gcode::Diagnostics notes_on_runs(std::span<const RunReport> runs, const gcode::P
   }
   if (target.curves != nullptr && !target.curves->caution.empty()) {
     tell_first(gcode::Severity::kWarning, "curves-unverified", std::string(target.curves->caution),
-               [](const RunReport& run) { return run.form == Form::kCurves; });
+               [](const RunReport& run) { return run.form == Form::kCurves || run.had_curves; });
   }
   tell_first(
       gcode::Severity::kNote, "chords-for-steps",

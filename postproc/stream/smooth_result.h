@@ -48,6 +48,7 @@ struct RunReport {
   std::string_view method;          // that made what stands there now; empty where it was kept
   std::vector<MethodTime> methods;  // all that were tried, whether it was rewritten or not
   Form form = Form::kLines;
+  bool had_curves = false;  // it was said in the target's curve words
   std::size_t blocks_in = 0;
   std::size_t blocks_out = 0;
   std::size_t computed_blocks = 0;  // of a rewritten run: with expressions, which are numbers now

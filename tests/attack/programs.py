@@ -63,6 +63,10 @@ ENDS = {"linuxcnc": "G0 Z5|M2", "fanuc": "G0 Z5.|M30|%", "siemens": "G0 Z5|M30",
 SUBPROGRAMS = """o100 sub|M8|o100 endsub|o110 sub|G91|o110 endsub|o120 sub|F123|G18|o120 endsub|o130 sub|G0 X9 Y9|
     o130 endsub|o140 sub|G20|o140 endsub""".replace("\n", "").split("|")
 
+# Curve words: of which controls, and as what their blocks are said.
+CURVES = {"linuxcnc": ["G5", "G5", "G5.1", "G5.2"], "grblhal": ["G5"], "marlin": ["G5"], "fanuc": ["G6.2"],
+          "siemens": ["POLY"], "itnc530": ["SPL"]}
+
 STYLES = ("contours", "raster", "waterlines", "adaptive", "engraving", "plasma", "laser", "printer", "drilling", "finishing")
 
 
@@ -73,6 +77,8 @@ def between(target):
 
 class Programs:
     """For one target. Paths are chains of (point, feed) with rapids between; see `chains`."""
+
+    curves = 0.0  # how often a curve begins at a place
 
     def __init__(self, target, chance):
         self.target, self.random = target, chance
@@ -95,6 +101,7 @@ class Programs:
         self.comments = chance.random() < 0.15
         style = chance.choice(STYLES)
         often = chance.choice([0.0, 0.0, 0.01, 0.04, 0.12])
+        self.curves = chance.choice([0.0, 0.0, 0.05, 0.3, 0.9]) if self.target in CURVES else 0.0
         lines = HEADS[self.like].split("|")
         if self.inch:
             lines = [line.replace("G21", "G20").replace("G71", "G70") for line in lines]
@@ -168,10 +175,21 @@ class Programs:
         lines.append(self.line(top, None, True))
         lines.append(self.line(first[0], 200))
         self.last_feed = 200
-        for place, feed in rest:
+        self.spoken = None  # the place as it was printed, where a curve can begin
+        skipped = 0
+        for at, (place, feed) in enumerate(rest):
+            if skipped:
+                skipped -= 1
+                continue
+            if self.curves and feed == self.last_feed and chance.random() < self.curves:
+                skipped = self.curve_lines(chain, at, lines)
+                if skipped:
+                    skipped -= 1
+                    continue
             place = tuple(x + chance.uniform(-self.noise, self.noise) for x in place)
             text = self.line(place, feed)
             self.last_feed = feed
+            self.spoken = tuple(float(self.number(x)) * (25.4 if self.inch else 1) for x in place)
             if style == "laser" and not self.klartext and chance.random() < 0.1:
                 text += f"{self.blank}S{chance.choice([100, 200, 250])}"
             if style == "printer" and self.like == "marlin" and chance.random() < 0.05:
@@ -185,6 +203,7 @@ class Programs:
             if chance.random() < often:
                 lines += chance.choice(self.between)
                 self.last = dict.fromkeys("XYZ")
+                self.spoken = None
                 if chance.random() < 0.8:
                     self.last_feed = None
                     self.begins = True
@@ -193,6 +212,79 @@ class Programs:
                                   "fanuc": "G17 G21 G90 G94 G40 G69", "marlin": "G90",
                                   "siemens": "G17 G71 G90 G94 G64 G40 TRANS"}[self.like])
         lines.append(self.line((rest[-1][0][0], rest[-1][0][1], 5.0) if rest else top, None, True))
+        return lines
+
+    # --- curves ---
+
+    def curve_lines(self, chain, at, lines):
+        """A curve from the place behind chain[at] over the next points; how many of them, or none."""
+        chance = self.random
+        word = chance.choice(CURVES[self.target])
+        count = chance.choice([1, 1, 2, 4])
+        feed = chain[at + 1][1]
+        ends = [p for p, f in chain[at + 1:at + 1 + count] if f == feed]
+        here = self.spoken
+        if here is None or len(ends) < count or min(math.dist(a, b) for a, b in zip([here, *ends], ends)) < 0.02:
+            return 0
+        if word[:2] == "G5" and any(abs(p[2] - here[2]) > 1e-9 for p in ends):
+            return 0
+        kink = chance.choice([0.0, 0.01, 0.05])
+        number = lambda x: float(self.number(x)) * (25.4 if self.inch else 1)  # noqa: E731
+        pieces, before = [], chain[at][0] if at else here
+        for n, end in enumerate(ends):
+            end = tuple(number(x) for x in end)
+            after = chain[min(at + 2 + n, len(chain) - 1)][0]
+            legs = [[(q - p) / 6 * (1 + chance.uniform(-kink, kink)) + chance.uniform(-kink, kink) * 0.1 * math.dist(here, end)
+                     for p, q in pair] for pair in (zip(before, end), zip(here, after))]
+            if word[:2] == "G5":
+                legs[0][2] = legs[1][2] = 0.0
+            pieces.append((here, tuple(p + v for p, v in zip(here, legs[0])), tuple(p - v for p, v in zip(end, legs[1])), end))
+            before, here = here, end
+        lines += self.curve_words(word, pieces)
+        self.spoken = here
+        self.last = dict.fromkeys("XYZ")
+        self.begins = True
+        return count
+
+    def curve_words(self, word, pieces):
+        n, blank = self.number, self.blank
+        xy = lambda p: [f"X{n(p[0])}", f"Y{n(p[1])}"]  # noqa: E731
+        if word == "G5":
+            lines = []
+            for k, (a, b, c, d) in enumerate(pieces):
+                leaves = [f"I{n(b[0] - a[0])}", f"J{n(b[1] - a[1])}"]
+                goes_on = k > 0 and self.target == "linuxcnc" and self.random.random() < 0.4
+                lines.append(blank.join(["G5", *xy(d), *([] if goes_on else leaves), f"P{n(c[0] - d[0])}", f"Q{n(c[1] - d[1])}"]))
+            return lines
+        if word == "G5.1":
+            return [blank.join(["G5.1", *xy(d), f"I{n(1.5 * (b[0] - a[0]))}", f"J{n(1.5 * (b[1] - a[1]))}"])
+                    for a, b, _, d in pieces]
+        if word == "G5.2":
+            points = [p for piece in pieces for p in piece[1:]]
+            return ["G5.2 P1 L" + str(self.random.choice([2, 3, 4]))] + [blank.join([*xy(p), "P1"]) for p in points] + ["G5.3"]
+        if word == "G6.2":
+            xyz = lambda p: blank.join([*xy(p), f"Z{n(p[2])}"])  # noqa: E731
+            points = [pieces[0][0]] + [p for piece in pieces for p in piece[1:]]
+            knots = [0] * 4 + [k for k in range(1, len(pieces)) for _ in range(3)] + [len(pieces)] * 4
+            return [blank.join(["G06.2", "P4", f"K{knots[0]}.", xyz(points[0])])] + \
+                [blank.join([f"K{k}.", xyz(p)]) for k, p in zip(knots[1:], points[1:])] + [f"K{knots[-1]}."] * 4
+        lines = []
+        for k, (a, b, c, d) in enumerate(pieces):
+            words = []
+            for axis, name in enumerate("XYZ"):
+                end = float(n(d[axis]))
+                start = float(n(a[axis]))
+                unit = 25.4 if self.inch else 1
+                if word == "POLY":
+                    second, third = 3 * (a[axis] - 2 * b[axis] + c[axis]), d[axis] - a[axis] - 3 * (c[axis] - b[axis])
+                    words.append(f"PO[{name}]=({n(d[axis])},{second / unit:.6f},{third / unit:.6f})")
+                else:
+                    k1, k2 = round(3 * (c[axis] - d[axis]), 6), round(3 * (b[axis] - 2 * c[axis] + d[axis]), 6)
+                    words.append((f"{name}{n(d[axis])}", f" K3{name}{start - end - k1 - k2:+.6f} K2{name}{k2:+.6f} K1{name}{k1:+.6f}"))
+            if word == "POLY":
+                lines.append(" ".join((["POLY"] if k == 0 else []) + words))
+            else:
+                lines.append("SPL " + " ".join(w[0] for w in words) + "".join(w[1] for w in words))
         return lines
 
     def between_chains(self, style):

@@ -132,6 +132,8 @@ class PlainReader(Reader):
         self.inches = {70: True, 71: False} if kind in ("fagor", "num", "beckhoff") else {20: True, 21: False}
         self.repeats = kind not in ("klipper", "marlin")
         self.parameters, self.nurbs, self.cycle = {}, None, False
+        self.onwards = None  # of the last G5: the way in which it arrived
+        self.even = None  # of G5.2: its points, whether they are of weight 1, order, words
         self.begun = False
         self.offset_code = None
         # Of those that want it around curves: G05 P.
@@ -263,6 +265,8 @@ class PlainReader(Reader):
             raise Unknown
         if self.nurbs is not None and not codes:
             return self.nurbs_line(values)
+        if self.even is not None and codes != ["G5.3"]:
+            return self.even_line(values, codes, raw)
         known = [code for code in codes if self.knows(code, values)]
         if len(known) < len(codes):
             raise Unknown
@@ -334,7 +338,7 @@ class PlainReader(Reader):
         if code[0] == "G" and number.isdigit() and int(number) in self.inches:
             self.inch = self.inches[int(number)]
         elif code in ("G0", "G1", "G2", "G3"):
-            self.motion, self.cycle = int(number), False
+            self.motion, self.cycle, self.onwards = int(number), False, None
         elif code in ("G17", "G18", "G19"):
             self.plane = int(number)
         elif code in ("G90", "G91"):
@@ -389,14 +393,24 @@ class PlainReader(Reader):
             elif not (code == "G92" and values):
                 self.act("moves")
             return True
-        elif code in ("G33", "G38.2", "G5.2", "G5.3"):
+        elif code == "G5.2":
+            self.motion, self.cycle, self.onwards = code, True, None
+            weight = values.get("P", 1.0)
+            self.even = [[tuple(self.place)], weight == 1.0, values.get("L", 3.0), raw]
+            if values.keys() & set("XY"):
+                self.even_line({"P": weight, **{name: x for name, x in values.items() if name not in "LF"}}, [], "")
+            return True
+        elif code == "G5.3":
             self.motion, self.cycle = code, True
-            if code == "G5.3":
-                self.event(code)
-                self.act("moves")
+            self.even_end()
+            return True
+        elif code in ("G33", "G38.2"):
+            self.motion, self.cycle, self.onwards = code, True, None
         elif code == "G5" and self.look_ahead is not None:
             self.look_ahead = values.get("P", 0)
             return True
+        elif code == "G5.1" and self.kind == "linuxcnc" and {"I", "J"} <= values.keys():
+            self.motion, self.cycle, self.onwards = "5.1", False, None
         elif code in ("G5.1", "G187", "G5"):
             self.event(raw)
             if code == "G5.1" and values.get("Q", 0) > 1:
@@ -439,10 +453,22 @@ class PlainReader(Reader):
             if "R" in values:  # a rounded corner
                 self.event(f"{words} [{self.state()}]")
             return self.move([end], False, words)
+        if self.motion == "5.1":
+            b = [self.place[0] + self.length(values["I"]), self.place[1] + self.length(values["J"]), self.place[2]]
+            if end[2] != self.place[2] or self.plane != 17:
+                self.event("a curve that leaves its plane")
+            inner = [[(p + 2 * q) / 3 for p, q in zip(at, b)] for at in (self.place, end)]
+            return self.move(paths.cubic_points(self.place, *inner, end), False, words)
         if self.motion == "5":
-            b1 = [self.place[0] + self.length(values.get("I", 0)), self.place[1] + self.length(values.get("J", 0)),
-                  self.place[2]]
-            b2 = [end[0] + self.length(values.get("P", 0)), end[1] + self.length(values.get("Q", 0)), end[2]]
+            leaves = [self.length(values.get("I", 0)), self.length(values.get("J", 0))]
+            if self.kind == "linuxcnc" and not values.keys() & set("IJ"):
+                if self.onwards is None:
+                    self.event(f"refused {words}")
+                leaves = self.onwards or leaves
+            b1 = [self.place[0] + leaves[0], self.place[1] + leaves[1], self.place[2]]
+            back = [self.length(values.get("P", 0)), self.length(values.get("Q", 0))]
+            self.onwards = [-x for x in back]
+            b2 = [end[0] + back[0], end[1] + back[1], end[2]]
             if self.kind == "marlin":
                 b1[2], b2[2] = (self.place[2] * 2 + end[2]) / 3, (self.place[2] + end[2] * 2) / 3
             elif end[2] != self.place[2] or self.plane != 17:
@@ -471,6 +497,25 @@ class PlainReader(Reader):
             self.event(f"refused {words}")
         turns = int(values["P"]) if "P" in values and values["P"] >= 1 else 1
         self.move(paths.arc_points(self.place, end, centre, axes, turn, turns), False, words)
+
+    def even_line(self, values, codes, raw):
+        """A control point of G5.2, or what is none."""
+        points, good, order, text = self.even
+        good = good and not codes and values.keys() - {"N"} == set("XYP") and values["P"] == 1.0
+        if good:
+            points.append((self.length(values["X"]), self.length(values["Y"]), points[-1][2]))
+        self.even = [points, good and self.absolute and self.plane == 17, order, f"{text} {raw}"]
+
+    def even_end(self):
+        points, good, order, text = self.even or [[], False, 0, ""]
+        self.even = None
+        order = int(order) if order in (2, 3, 4) else 0
+        if not good or not order or len(points) < order:
+            self.event(f"{text} G5.3")
+            return self.act("moves")
+        spans = len(points) - order + 1
+        knots = [0.0] * order + [float(n) for n in range(1, spans)] + [float(spans)] * order
+        self.move(paths.nurbs_points(order, points, [1.0] * len(points), knots), False, text)
 
     def nurbs_line(self, values):
         control, weights, knots, order, raw = self.nurbs

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <variant>
 
+#include "gcode/curves/g5_curve.h"
 #include "gcode/curves/heidenhain_spl.h"
 #include "gcode/curves/nurbs.h"
 #include "gcode/curves/siemens_curves.h"
@@ -39,8 +40,9 @@ inline std::string broken_reading(const CurveResult& result, std::uint32_t first
 
 inline std::string broken_readers_at(const Program& program, std::uint32_t first,
                                      const CurveStart& start) {
-  for (const CurveFormat* format : {&fanuc_curves(), &syntec_curves(), &mitsubishi_curves(),
-                                    &siemens_poly(), &siemens_bspline(), &heidenhain_spl()}) {
+  for (const CurveFormat* format :
+       {&linuxcnc_g5(), &chopped_g5(), &fanuc_curves(), &syntec_curves(), &mitsubishi_curves(),
+        &siemens_poly(), &siemens_bspline(), &heidenhain_spl()}) {
     std::string broken = broken_reading(format->read(program, first, start), first, program);
     if (!broken.empty()) return std::string(format->name) + ": " + broken;
   }

@@ -125,17 +125,21 @@ class RunChords {
   RunChords(const Run& run, const gcode::ArcChords& chords) : run_(run) {
     const double usual = gcode::usual_chord_error(chords);
     aimed_at_ = std::isfinite(usual) ? usual : 0;
-    for (const RunArc& arc : run.arcs) errors_.push_back(gcode::chord_error(chords, arc.arc));
+    for (const RunBend& bend : run.bends) {
+      const auto* arc = std::get_if<geometry::Arc>(&bend.piece);
+      errors_.push_back(arc != nullptr ? gcode::chord_error(chords, *arc)
+                                       : std::numeric_limits<double>::infinity());
+    }
   }
 
   // mm: the greatest between two vertices, or what the target itself aims at; without an arc there,
   // new ones may have any.
   [[nodiscard]] double greatest(std::size_t first, std::size_t last) const {
-    const auto begin = std::ranges::upper_bound(run_.arcs, first, {}, &RunArc::last);
+    const auto begin = std::ranges::upper_bound(run_.bends, first, {}, &RunBend::last);
     double greatest = aimed_at_;
-    auto i = static_cast<std::size_t>(begin - run_.arcs.begin());
+    auto i = static_cast<std::size_t>(begin - run_.bends.begin());
     const std::size_t from = i;
-    for (; i < run_.arcs.size() && run_.arcs[i].first < last; ++i) {
+    for (; i < run_.bends.size() && run_.bends[i].first < last; ++i) {
       greatest = std::max(greatest, errors_[i]);
     }
     return i > from ? greatest : std::numeric_limits<double>::infinity();

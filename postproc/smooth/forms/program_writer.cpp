@@ -59,10 +59,12 @@ class RunWriter {
     ++result_.blocks;
   }
 
-  // G2 and G3 cannot be said again by themselves, and no block after a run needs them (section.h).
+  // The words of arcs and curves cannot be said again by themselves, and no block after a run needs
+  // them (section.h).
   void restore(gcode::ModalState after) {
     const std::size_t begin = writer_.text().size();
-    if (is_arc(after.motion)) after.motion = gcode::MotionMode::kUnknown;
+    const bool curve = after.motion == gcode::MotionMode::kOther;
+    if (is_arc(after.motion) || curve) after.motion = gcode::MotionMode::kUnknown;
     writer_.restore(after);
     count_from(begin);
   }

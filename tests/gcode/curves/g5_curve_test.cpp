@@ -77,6 +77,106 @@ TEST(G5, RefusesToReadOtherBlocks) {
   }
 }
 
+// Behind a G5 one without I and J leaves as the one before arrived. An axis without a word stays.
+TEST(G5, GoesOnFromTheOneBefore) {
+  const CurveResult result =
+      read("G5 X10 I0 J3 P1 Q-2 F700\n(a)\nG5 X20.25 Y1 P0 Q3\nG1 X30\n", kOrigin);
+  const auto* reading = std::get_if<CurveReading>(&result);
+  ASSERT_NE(reading, nullptr);
+  EXPECT_EQ(reading->blocks, 3U);
+  EXPECT_EQ(reading->decimals, 2);
+  EXPECT_EQ(reading->feed, 700);
+  ASSERT_EQ(reading->motions.size(), 2U);
+  EXPECT_EQ(reading->motions[1].block, 2U);
+  const auto& first = std::get<CubicBezier>(reading->motions[0].piece);
+  const auto& second = std::get<CubicBezier>(reading->motions[1].piece);
+  EXPECT_EQ(first.control[2], Point3(11, -2, -1));
+  EXPECT_EQ(first.control[3], Point3(10, 0, -1));
+  EXPECT_EQ(second.control[1], Point3(9, 2, -1));
+  EXPECT_EQ(second.control[2], Point3(20.25, 4, -1));
+  EXPECT_EQ(second.control[3], Point3(20.25, 1, -1));
+}
+
+// A whole one is a curve of its own, and so ends one that goes on; a feed of its own ends it too.
+TEST(G5, EndsWhereTheNextOneDoesNotGoOn) {
+  for (const char* next :
+       {"G5 X20 Y0 I1 J1 P0 Q3", "G5 X20 Y0 P0 Q3 F9", "X20 P0 Q3", "G5 P0 Q3"}) {
+    const CurveResult result = read(std::string("G5 X10 I0 J3 P1 Q-2\n") + next + "\n", kOrigin);
+    ASSERT_TRUE(std::holds_alternative<CurveReading>(result)) << next;
+    EXPECT_EQ(std::get<CurveReading>(result).blocks, 1U) << next;
+  }
+}
+
+// One inner control point, (5, 3) from the start: the cubic that is the same has 2/3 of each leg.
+TEST(G51, IsAQuadraticPiece) {
+  const CurveResult result = read("G5.1 X40 I5 J3\n", kOrigin);
+  const auto* reading = std::get_if<CurveReading>(&result);
+  ASSERT_NE(reading, nullptr);
+  const auto& piece = std::get<CubicBezier>(reading->motions.at(0).piece);
+  EXPECT_LT((piece.control[1] - Point3(10.0 / 3, 2, -1)).norm(), 1e-12);
+  EXPECT_LT((piece.control[2] - Point3(50.0 / 3, 2, -1)).norm(), 1e-12);
+  // At a quarter: 9/16 P0 + 6/16 P1 + 1/16 P2.
+  EXPECT_LT((geometry::point_at(piece, 0.25) - Point3(4.375, 1.125, -1)).norm(), 1e-12);
+}
+
+// Where LinuxCNC 2.9 goes in this program, measured: at 0.15 and 0.3 of the first of three spans,
+// the middle of the second, and the end.
+TEST(G52, GoesWhereLinuxCncGoes) {
+  const CurveResult result =
+      read("G5.2 X3 Y3 P1 L3\nX5 Y2 P1\n(a)\nX6 Y0 P1\nX8 Y1 P1\nG5.3\nG1 X9\n",
+           {Point3(1, 2, 0), {true, true, true}});
+  const auto* reading = std::get_if<CurveReading>(&result);
+  ASSERT_NE(reading, nullptr);
+  EXPECT_EQ(reading->blocks, 6U);
+  ASSERT_EQ(reading->motions.size(), 3U);
+  EXPECT_EQ(reading->motions[0].block, 1U);
+  EXPECT_EQ(reading->motions[2].block, 4U);
+  const auto at = [&](std::size_t piece, double t) {
+    return geometry::point_at(reading->motions[piece].piece, t);
+  };
+  EXPECT_LT((at(0, 0.15) - Point3(1.5775, 2.26625, 0)).norm(), 1e-5);
+  EXPECT_LT((at(0, 0.3) - Point3(2.11, 2.465, 0)).norm(), 1e-5);
+  EXPECT_LT((at(1, 0.5) - Point3(4.875, 1.875, 0)).norm(), 1e-5);
+  EXPECT_LT((at(2, 1) - Point3(8, 1, 0)).norm(), 1e-12);
+}
+
+TEST(G52, OfOrderFourIsCubic) {
+  const CurveResult result = read("G5.2 P1 L4 F50\nX1 Y1 P1\nX2 Y1 P1\nX3 Y0 P1\nG5.3\n", kOrigin);
+  const auto* reading = std::get_if<CurveReading>(&result);
+  ASSERT_NE(reading, nullptr);
+  EXPECT_EQ(reading->feed, 50);
+  ASSERT_EQ(reading->motions.size(), 1U);
+  const auto& piece = std::get<CubicBezier>(reading->motions[0].piece);
+  EXPECT_LT((piece.control[1] - Point3(1, 1, -1)).norm(), 1e-12);
+  EXPECT_LT((piece.control[2] - Point3(2, 1, -1)).norm(), 1e-12);
+}
+
+TEST(G52, RefusesWhatIsNoBsplineOrIsRefusedByTheControl) {
+  for (const char* text :
+       {"G5.2 P2 L3\nX1 Y1 P2\nX2 Y1 P2\nX3 Y0 P2\nG5.3", "G5.2 L3\nX1 Y1 P1\nX2 Y1 P.5\nG5.3",
+        "G5.2 L3\nX1 Y1\nX2 Y1 P1\nG5.3", "G5.2 L3\nX1 P1\nX2 Y1 P1\nG5.3",
+        "G5.2 L4\nX1 Y1 P1\nX2 Y1 P1\nG5.3",
+        "G5.2 L5\nX1 Y1 P1\nX2 Y1 P1\nX3 Y1 P1\nX4 Y1 P1\nG5.3",
+        "G5.2 L3\nX1 Y1 P1\nG1 X2 Y1\nG5.3", "G5.2 L3\nX1 Y1 P1\nX2 Y1 P1 F9\nG5.3",
+        "G5.2 L3\nX1 Y1 P1\nX2 Y1 P1\nG5.3 X3 Y3", "G5.2 L3\nX1 Y1 P1\nX2 Y1 P1\n",
+        "G5.2 X1 L3\nX2 Y1 P1\nG5.3", "G5.2 L3\nX1 Y1 P1\nX2 Y1 Z3 P1\nG5.3",
+        "G5.2 L3 M8\nX1 Y1 P1\nX2 Y1 P1\nG5.3"}) {
+    EXPECT_TRUE(std::holds_alternative<CurveRefusal>(read(text, kOrigin))) << text;
+  }
+}
+
+TEST(G5, OfGrblHalAndMarlinHasAllItsWords) {
+  Diagnostics found;
+  for (const char* text :
+       {"G5 X10 I0 J3 P1 Q-2", "G5.1 X40 I5 J3", "G5.2 L3\nX1 Y1 P1\nX2 Y1 P1\nG5.3"}) {
+    const Program program = parse(SourceText("test.nc", text), found);
+    EXPECT_TRUE(std::holds_alternative<CurveRefusal>(
+        chopped_g5().read(program, 0, {kOrigin, Units::kMillimetre})))
+        << text;
+    EXPECT_TRUE(std::holds_alternative<CurveReading>(read(text, kOrigin))) << text;
+  }
+}
+
 TEST(G5, NeedsAKnownPlace) {
   Position nowhere = kOrigin;
   nowhere.known[1] = false;

@@ -45,6 +45,18 @@ class Pen {
     motions_.push_back({Arc{from, at_, center, Vector3::UnitZ(), sweep}, false});
     return *this;
   }
+  // A cubic piece about so long, that rises evenly.
+  Pen& curve(double length, double sweep, double rise = 0) {
+    const Point3 from = at_;
+    const Vector3 third(0, 0, rise / 3);
+    const Point3 second = from + length / 3 * forward() + third;
+    heading_ += sweep / 2;
+    at_ += length * forward() + 3 * third;
+    heading_ += sweep / 2;
+    const Point3 before_end = at_ - length / 3 * forward() - third;
+    motions_.push_back({geometry::CubicBezier{{from, second, before_end, at_}}, false});
+    return *this;
+  }
   Pen& turn(double degrees) {
     heading_ += radians(degrees);
     return *this;
@@ -91,6 +103,16 @@ TEST(JudgeArcs, KeepsWhatIsIntendedAndCutsAtCornersBesideArcs) {
       {"fillet before kinks", Pen().line(9).arc(2, 1).arc(14, 0.3).turn(1).arc(20, 0.2), "pKpp"},
       {"ramp and floor", Pen().arc(5, kPi, -0.2).arc(5, kPi, -0.2).arc(5, kPi).arc(5, kPi),
        "KK|KK"},
+      // Curves are never intended: what their forms cost decides.
+      {"curve between lines", Pen().line(10).curve(8, 0.5).line(10), "ppp"},
+      {"kinks at a curve", Pen().line(0.5).turn(1).curve(8, 0.5).turn(-1).curve(3, 0.5), "ppp"},
+      {"corner before a curve", Pen().line(10).turn(40).curve(8, 0.5).line(5), "p|pp"},
+      {"corner between curves", Pen().curve(4, 0.5).turn(-35).curve(3, -0.5), "p|p"},
+      {"long curves in a kink", Pen().curve(40, 0.5).turn(15).curve(40, 0.5), "p|p"},
+      {"arc tangent to a curve", Pen().arc(10, 0.4).curve(8, 0.5), "Kp"},
+      {"arc in a kink with a curve", Pen().arc(10, 0.4).turn(1).curve(8, 0.5), "pp"},
+      {"curve onto a ramp", Pen().curve(0.8, 0.1).curve(0.8, 0.1, 0.05).curve(0.8, 0.1, 0.05),
+       "p|pp"},
   };
   for (const auto& row : rows) EXPECT_EQ(row.path.judged(), row.judged) << row.name;
 }

@@ -210,7 +210,7 @@ TEST(ArcsInRuns, PiecesOfACurveAreARun) {
   ASSERT_EQ(grouped.runs().size(), 1U);
   const postproc::Run& run = grouped.only_run();
   EXPECT_TRUE(run.closed);
-  EXPECT_EQ(run.arcs.size(), motion_count(run));
+  EXPECT_EQ(run.bends.size(), motion_count(run));
   EXPECT_LE(run.chord_error, 0.05 * GroupingOptions{}.tolerance_mm);
   EXPECT_EQ(grouped.outline().find("arc"), std::string::npos);
 }
@@ -223,12 +223,12 @@ TEST(ArcsInRuns, FeedsAndCommentsStayAtTheEndsOfMotions) {
   }
   const Grouped grouped(text);
   const postproc::Run& run = grouped.only_run();
-  ASSERT_EQ(run.arcs.size(), 12U);
+  ASSERT_EQ(run.bends.size(), 12U);
   ASSERT_EQ(run.feeds.size(), 2U);
-  EXPECT_EQ(run.feeds[1].vertex, run.arcs[9].first);
+  EXPECT_EQ(run.feeds[1].vertex, run.bends[9].first);
   ASSERT_EQ(run.comments.size(), 2U);
-  EXPECT_EQ(run.comments[0].vertex, run.arcs[6].last);
-  EXPECT_EQ(run.comments[1].vertex, run.arcs[6].last);
+  EXPECT_EQ(run.comments[0].vertex, run.bends[6].last);
+  EXPECT_EQ(run.comments[1].vertex, run.bends[6].last);
 }
 
 constexpr const char* kFillet = "G1 X1\nX2\nX3\nG3 X4 Y1 J1\nG1 Y2\nY3\nY4\n";

@@ -1,4 +1,4 @@
-// The points of a run follow its arcs, and its pieces are the arcs themselves.
+// The points of a run follow its arcs and curves, and its pieces are these themselves.
 #include "postproc/runs/run_path.h"
 
 #include <gtest/gtest.h>
@@ -34,7 +34,19 @@ geometry::Arc random_arc(const Point3& start, std::mt19937& random) {
   return {start, center + out(angle + sweep) + rise * axis, center, axis, sweep};
 }
 
-// Lines and arcs at random.
+// Control points at random steps, some of them none.
+geometry::CubicBezier random_cubic(const Point3& start, std::mt19937& random) {
+  std::uniform_real_distribution<double> unit(0, 1);
+  const double size = std::pow(10.0, 3 * unit(random) - 1);
+  geometry::CubicBezier cubic{{start, start, start, start}};
+  for (int i = 1; i < 4; ++i) {
+    const Vector3 step(unit(random), unit(random) - 0.5, unit(random) - 0.5);
+    cubic.control[i] = cubic.control[i - 1] + (unit(random) < 0.1 ? 0 : size) * step;
+  }
+  return cubic;
+}
+
+// Lines, arcs and pieces of curves at random.
 Run random_run(unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> unit(0, 1);
@@ -42,10 +54,13 @@ Run random_run(unsigned seed) {
   run.points = {Point3(unit(random), unit(random), unit(random))};
   const int motions = 3 + static_cast<int>(10 * unit(random));
   for (int i = 0; i < motions; ++i) {
-    if (unit(random) < 0.4) {
+    const double kind = unit(random);
+    if (kind < 0.3) {
       run.points.push_back(run.points.back() + Point3(unit(random), 1, -unit(random)));
+    } else if (kind < 0.6) {
+      append_bend(random_cubic(run.points.back(), random), true, 4e-4, run);
     } else {
-      append_arc(random_arc(run.points.back(), random), true, 4e-4, run);
+      append_bend(random_arc(run.points.back(), random), true, 4e-4, run);
     }
   }
   run.feeds = {{0, 100}};
@@ -54,19 +69,19 @@ Run random_run(unsigned seed) {
 
 constexpr unsigned kRuns = 200;
 
-TEST(AppendArc, PutsVerticesOnTheArcSoThatChordsMissItByLittle) {
+TEST(AppendBend, PutsVerticesOnTheBendSoThatChordsMissItByLittle) {
   for (unsigned seed = 0; seed < kRuns; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     const postproc::Run run = random_run(seed);
     EXPECT_LE(run.chord_error, 4e-4 * (1 + 1e-12));
-    for (const RunArc& arc : run.arcs) {
-      ASSERT_GE(arc.last - arc.first, 4U);
-      const auto chords = static_cast<double>(arc.last - arc.first);
-      const double radius = (arc.arc.start - arc.arc.center).norm();
-      for (std::size_t i = arc.first; i < arc.last; ++i) {
-        const double t = static_cast<double>(i - arc.first) / chords;
-        EXPECT_LT((geometry::point_at(arc.arc, t) - run.points[i]).norm(), 1e-9 * (1 + radius));
-        const Point3 between = geometry::point_at(arc.arc, t + 0.5 / chords);
+    for (const RunBend& bend : run.bends) {
+      ASSERT_GE(bend.last - bend.first, 4U);
+      const auto chords = static_cast<double>(bend.last - bend.first);
+      const double size = geometry::length_of(bend.piece);
+      for (std::size_t i = bend.first; i < bend.last; ++i) {
+        const double t = static_cast<double>(i - bend.first) / chords;
+        EXPECT_LT((geometry::point_at(bend.piece, t) - run.points[i]).norm(), 1e-9 * (1 + size));
+        const Point3 between = geometry::point_at(bend.piece, t + 0.5 / chords);
         const Point3 middle = 0.5 * (run.points[i] + run.points[i + 1]);
         EXPECT_LE((between - middle).norm(), run.chord_error * (1 + 1e-6));
       }
@@ -75,7 +90,7 @@ TEST(AppendArc, PutsVerticesOnTheArcSoThatChordsMissItByLittle) {
 }
 
 // Wherever the run is cut, the parts are as long together as the whole, and they chain.
-TEST(MotionsBetween, AreTheMotionsThemselvesOrPartsOfArcsThatAreCut) {
+TEST(MotionsBetween, AreTheMotionsThemselvesOrPartsOfBendsThatAreCut) {
   const auto length_of = [](const std::vector<RunMotion>& motions) {
     double length = 0;
     for (const RunMotion& motion : motions) length += geometry::length_of(motion.piece);
@@ -86,16 +101,21 @@ TEST(MotionsBetween, AreTheMotionsThemselvesOrPartsOfArcsThatAreCut) {
     const postproc::Run run = random_run(seed);
     const auto motions = motions_between(run, 0, run.points.size() - 1);
     EXPECT_EQ(motions.size(), motion_count(run));
-    std::size_t arcs = 0;
+    std::size_t bends = 0;
     for (const RunMotion& motion : motions) {
       EXPECT_EQ(geometry::start_point(motion.piece), run.points[motion.first]);
       if (const auto* arc = std::get_if<geometry::Arc>(&motion.piece)) {
-        EXPECT_EQ(arc->sweep, run.arcs[arcs].arc.sweep);
-        EXPECT_EQ(motion.first, run.arcs[arcs].first);
-        ++arcs;
+        EXPECT_EQ(arc->sweep, std::get<geometry::Arc>(run.bends[bends].piece).sweep);
       }
+      if (const auto* cubic = std::get_if<geometry::CubicBezier>(&motion.piece)) {
+        const auto& whole = std::get<geometry::CubicBezier>(run.bends[bends].piece);
+        EXPECT_EQ(cubic->control[1], whole.control[1]);
+      }
+      if (std::holds_alternative<geometry::Line>(motion.piece)) continue;
+      EXPECT_EQ(motion.first, run.bends[bends].first);
+      ++bends;
     }
-    EXPECT_EQ(arcs, run.arcs.size());
+    EXPECT_EQ(bends, run.bends.size());
     EXPECT_EQ(geometry::end_point(motions.back().piece), run.points.back());
     const std::size_t end = run.points.size() - 1;
     std::mt19937 random(seed);
@@ -145,9 +165,9 @@ TEST(ArcScatter, IsHowFarArcsAreFromAClothoid) {
     }
     const Point3 end(arc.end.x(), arc.end.y(), 0);
     const double sweep = 2 * std::asin(0.5 * (arc.end - arc.start).norm() / radius);
-    append_arc({run.points.back(), end, Point3(arc.center.x(), arc.center.y(), 0), Vector3::UnitZ(),
-                arc.clockwise ? -sweep : sweep},
-               true, 1e-4, run);
+    append_bend(geometry::Arc{run.points.back(), end, Point3(arc.center.x(), arc.center.y(), 0),
+                              Vector3::UnitZ(), arc.clockwise ? -sweep : sweep},
+                true, 1e-4, run);
   }
   const double truth = std::sqrt(squares / (kArcs * kEach));
   EXPECT_NEAR(arc_scatter(run), truth, 0.1 * truth);

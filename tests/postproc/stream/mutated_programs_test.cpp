@@ -18,6 +18,7 @@
 #include "tests/fuzz/parse_promises.h"
 #include "tests/fuzz/program_mutation.h"
 #include "tests/fuzz/smooth_promises.h"
+#include "tests/support/curve_programs.h"
 #include "tests/support/places.h"
 
 namespace batten::postproc {
@@ -103,6 +104,46 @@ TEST(MutatedPrograms, AreSmoothedProvedAndOtherwiseCopied) {
     rewritten += result.text == text ? 0 : 1;
   }
   EXPECT_GT(rewritten, programs_to_try() / 20);
+}
+
+// Chains of curves for the controls that read them, among lines: whole ones, and ones that lost a
+// block, a word or a digit.
+TEST(MutatedPrograms, OfCurvesAreSmoothedProvedAndOtherwiseCopied) {
+  using tests::CurveWord;
+  constexpr std::pair<CurveWord, const char*> kWords[] = {
+      {CurveWord::kG5, "linuxcnc"},  {CurveWord::kG51, "linuxcnc"},
+      {CurveWord::kG52, "linuxcnc"}, {CurveWord::kG062, "fanuc"},
+      {CurveWord::kG5, "marlin"},    {CurveWord::kPoly, "siemens"},
+      {CurveWord::kSpl, "itnc530"},  {CurveWord::kBspline, "siemens-bspline"}};
+  int rewritten = 0;
+  for (int number = 0; number < programs_to_try(); ++number) {
+    const auto seed = static_cast<unsigned>(number);
+    const auto& [word, target] = kWords[seed % std::size(kWords)];
+    const tests::CurvePath path{.pieces = 14, .quadratic = word == CurveWord::kG51, .seed = seed};
+    const auto pieces = tests::curve_pieces(path);
+    std::string curves;
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+      const bool line = i % 5 == 4 && word != CurveWord::kSpl;
+      const geometry::Point3& end = pieces[i].control[3];
+      const bool begins = i == 0 || i % 5 == 0;
+      curves += line ? fmt::format("G1 X{:.3f} Y{:.3f}\n", end.x(), end.y())
+                     : tests::words_of(pieces[i], word, begins);
+    }
+    std::string text =
+        tests::curve_head(word, pieces.front().control[0]) + curves + tests::curve_tail(word);
+    fuzz::ProgramMutator mutator(seed);
+    for (unsigned i = 0; i < seed / std::size(kWords) % 4; ++i) text = mutator.mutated(text, text);
+    SmoothOptions options = promises::options_for_text(text);
+    options.target = gcode::find_control(target);
+    options.machine = find_machine(options.target->machine);
+    options.source = gcode::SourceKind::kAuto;
+    options.convert = false;
+    SCOPED_TRACE(testing::Message() << "program " << number << " for " << target << "\n" << text);
+    ASSERT_EQ(promises::broken_by(text, options), "");
+    const SmoothResult result = smooth_program(gcode::SourceText("test.nc", text), options);
+    rewritten += result.text == text ? 0 : 1;
+  }
+  EXPECT_GT(rewritten, programs_to_try() / 10);
 }
 
 }  // namespace
