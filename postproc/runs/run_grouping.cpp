@@ -126,9 +126,25 @@ class RunGrouper {
   void take_motion(std::uint32_t i, const Motion& motion) {
     std::string_view why = states_.reason(read_.blocks[i].state_after);
     if (why.empty() && !motion.start_known) why = reason::kPositionUnknown;
+    const double tolerance = tolerance_after(i);
+    // Its comment would stand somewhere among the new moves.
+    if (why.empty() && tolerance != tolerance_before(i)) why = reason::kStatedTolerance;
+    if (!why.empty() || tolerance != tolerance_) close_chain();
+    tolerance_ = tolerance;
     if (why.empty()) return chain_.push_back(i);
-    close_chain();
     keep_up_to(i, why);
+  }
+
+  // mm: what a motion in this block may be moved by.
+  double tolerance_after(std::uint32_t block) const {
+    return tolerance_in(read_.blocks[block].state_after);
+  }
+  double tolerance_before(std::uint32_t block) const {
+    return tolerance_in(block > 0 ? read_.blocks[block - 1].state_after : 0);
+  }
+  double tolerance_in(std::uint32_t state) const {
+    const double users = options_.tolerance_mm;
+    return std::min(users, gcode::stated_tolerance_mm(read_.states[state]).value_or(users));
   }
 
   // Intended arcs are copied, and the chain is cut there and at corners beside arcs.
@@ -140,8 +156,7 @@ class RunGrouper {
     for (const std::uint32_t block : whole) {
       if (blocks_.moves(block)) moving.push_back(blocks_.printed(block));
     }
-    const ChainJudgement judged =
-        judge_arcs(moving, blocks_.errors_of(whole), options_.tolerance_mm);
+    const ChainJudgement judged = judge_arcs(moving, blocks_.errors_of(whole), tolerance_);
     std::size_t next = 0;
     for (const std::uint32_t block : whole) {
       if (!blocks_.moves(block)) {
@@ -224,7 +239,9 @@ class RunGrouper {
 
   void add_run(std::span<const std::uint32_t> blocks) {
     if (done_ < blocks.front()) keep_up_to(blocks.front() - 1, reason::kComment);
-    add({blocks.front(), blocks.back(), blocks_.run_of(blocks, kArcShare * options_.tolerance_mm)});
+    Run run = blocks_.run_of(blocks, kArcShare * tolerance_);
+    run.stated_tolerance_mm = gcode::least_stated_mm(read_, blocks.front(), blocks.back());
+    add({blocks.front(), blocks.back(), std::move(run)});
   }
 
   void add(Section section) {
@@ -270,6 +287,7 @@ class RunGrouper {
   std::vector<Section> sections_;
   std::size_t anew_ = 0;              // sections before the last cut
   std::vector<std::uint32_t> chain_;  // motion blocks that may become a run
+  double tolerance_ = 0;              // mm: of all of them
   std::uint32_t done_ = 0;            // blocks before this one are in sections
 };
 

@@ -1,6 +1,7 @@
 #include "postproc/smooth/repeated_runs.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <numeric>
@@ -47,8 +48,7 @@ bool are_same_moves(std::span<const TimedPiece> a, std::span<const TimedPiece> b
                     const Vector3& offset) {
   return std::ranges::equal(a, b, [&](const TimedPiece& one, const TimedPiece& other) {
     return one.feed == other.feed && one.rapid == other.rapid &&
-           one.says_speed == other.says_speed &&
-           one.piece.index() == other.piece.index() &&
+           one.says_speed == other.says_speed && one.piece.index() == other.piece.index() &&
            is_same(geometry::start_point(one.piece) + offset, geometry::start_point(other.piece)) &&
            is_same(geometry::point_at(one.piece, 0.5) + offset,
                    geometry::point_at(other.piece, 0.5)) &&
@@ -61,6 +61,7 @@ bool is_same_state(gcode::ModalState a, const gcode::ModalState& b) {
   a.motion = b.motion;
   a.feed = b.feed;
   a.spindle_speed = b.spindle_speed;
+  a.stated = b.stated;  // compared as what the runs have to keep
   return a == b;
 }
 
@@ -68,9 +69,9 @@ bool may_repeat(RunInContext each) {
   return each.run->comments.empty() && !each.context->of_neighbours;
 }
 
-// The same for runs of one shape: that of the vertices, seen from the first, in steps far above
-// what numbers differ by and off the places where printed numbers lie.
-std::uint64_t hash_of(const Run& run) {
+// The same for runs of one shape and tolerance: that of the vertices, seen from the first, in steps
+// far above what numbers differ by and off the places where printed numbers lie.
+std::uint64_t hash_of(const Run& run, double tolerance_mm) {
   constexpr double kStep = 1e-3;
   constexpr double kBetween = 0.3717;
   std::uint64_t hash = run.points.size();
@@ -78,6 +79,7 @@ std::uint64_t hash_of(const Run& run) {
     hash = (hash ^ static_cast<std::uint64_t>(value)) * 0x9E3779B97F4A7C15U;
     hash ^= hash >> 32U;
   };
+  add(std::bit_cast<std::int64_t>(tolerance_mm));
   for (const Point3& point : run.points) {
     const Vector3 from = point - run.points.front();
     for (const double part : from) {
@@ -97,6 +99,7 @@ std::optional<Vector3> offset_of_repeat(RunInContext first, RunInContext run,
   const RunContext& now = *run.context;
   if (!may_repeat(first) || !may_repeat(run) || a.points.size() != b.points.size() ||
       a.arcs.size() != b.arcs.size() || a.decimals != b.decimals || a.closed != b.closed ||
+      tolerance_of(a, options.tolerance_mm) != tolerance_of(b, options.tolerance_mm) ||
       !is_same_state(before.before, now.before) || !is_same_state(before.after, now.after) ||
       before.numbers.first.has_value() != now.numbers.first.has_value()) {
     return std::nullopt;
@@ -109,17 +112,18 @@ std::optional<Vector3> offset_of_repeat(RunInContext first, RunInContext run,
   };
   const bool same =
       is_step(offset.x()) && is_step(offset.y()) && is_step(offset.z()) &&
-      std::ranges::equal(a.points, b.points,
-                         [&](const Point3& p, const Point3& q) { return is_same(p + offset, q); }) &&
-      std::ranges::equal(a.arcs, b.arcs,
-                         [&](const RunArc& p, const RunArc& q) {
-                           return is_same_arc(p, q, offset);
-                         }) &&
+      std::ranges::equal(
+          a.points, b.points,
+          [&](const Point3& p, const Point3& q) { return is_same(p + offset, q); }) &&
+      std::ranges::equal(
+          a.arcs, b.arcs,
+          [&](const RunArc& p, const RunArc& q) { return is_same_arc(p, q, offset); }) &&
       std::ranges::equal(a.feeds, b.feeds,
                          [](const FeedFrom& p, const FeedFrom& q) {
                            return p.vertex == q.vertex && p.feed == q.feed;
                          }) &&
-      a.speed_words == b.speed_words && are_same_moves(before.lead, now.lead, offset) && are_same_moves(before.tail, now.tail, offset);
+      a.speed_words == b.speed_words && are_same_moves(before.lead, now.lead, offset) &&
+      are_same_moves(before.tail, now.tail, offset);
   return same ? std::optional(offset) : std::nullopt;
 }
 
@@ -130,7 +134,9 @@ std::vector<std::size_t> firsts_of_shapes(std::span<const RunInContext> runs,
   std::unordered_map<std::uint64_t, std::size_t> first_with;
   for (std::size_t i = 0; i < runs.size(); ++i) {
     if (!may_repeat(runs[i])) continue;
-    const std::size_t first = first_with.try_emplace(hash_of(*runs[i].run), i).first->second;
+    const Run& run = *runs[i].run;
+    const std::uint64_t hash = hash_of(run, tolerance_of(run, options.tolerance_mm));
+    const std::size_t first = first_with.try_emplace(hash, i).first->second;
     if (first != i && offset_of_repeat(runs[first], runs[i], options)) firsts[i] = first;
   }
   return firsts;
