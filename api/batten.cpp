@@ -52,11 +52,14 @@ struct Reading {
   Reading(std::string_view text, ProgramUnits units, gcode::SourceKind kind,
           const gcode::Control* target = nullptr,
           const std::optional<gcode::Decimals>& decimals = std::nullopt,
-          std::optional<gcode::Language> language = std::nullopt)
+          std::optional<gcode::Language> language = std::nullopt, bool one_tolerance = false)
       : source("program", std::string(text)),
         read{parse(units, kind, target, decimals, language), {}} {
-    read.meaning = gcode::interpret(
-        read.program, {inner(units), target == nullptr ? nullptr : target->curves}, found);
+    read.meaning = gcode::interpret(read.program,
+                                    {.units = inner(units),
+                                     .curves = target == nullptr ? nullptr : target->curves,
+                                     .stated_tolerances = !one_tolerance},
+                                    found);
     gcode::tell_of_contradictions(read.program, kind, found);
   }
 
@@ -146,6 +149,7 @@ InnerOptions inner(const Options& given) {
     }
   }
   options.tolerance_mm = given.tolerance_mm;
+  options.one_tolerance = given.one_tolerance;
   options.tolerance_kind =
       given.band_reading ? geometry::ToleranceKind::kBand : geometry::ToleranceKind::kPath;
   choose(options.method, "method", given.method, postproc::methods(), problems);
@@ -227,7 +231,7 @@ SmoothedProgram smooth(std::string_view program, const Options& options) {
 
 Proof verify(std::string_view old_program, std::string_view new_program, double tolerance_mm,
              ProgramUnits units, std::string_view target, std::string_view source,
-             std::string_view decimals) {
+             std::string_view decimals, bool one_tolerance) {
   const gcode::SourceKind kind = source_kind(source);
   if (!(tolerance_mm > 0) || !std::isfinite(tolerance_mm)) {
     throw std::invalid_argument("tolerance_mm: expected a finite length above 0");
@@ -241,8 +245,9 @@ Proof verify(std::string_view old_program, std::string_view new_program, double 
     proof.proved = true;
     return proof;
   }
-  const Reading before(old_program, units, kind, control, declared);
-  const Reading after(new_program, units, kind, control, declared, before.read.program.language);
+  const Reading before(old_program, units, kind, control, declared, std::nullopt, one_tolerance);
+  const Reading after(new_program, units, kind, control, declared, before.read.program.language,
+                      one_tolerance);
   for (const Reading* each : {&before, &after}) {
     for (Message& message : messages_of(each->found, each->source)) {
       if (message.severity == Severity::kError) proof.messages.push_back(std::move(message));

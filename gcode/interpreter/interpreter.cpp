@@ -11,6 +11,7 @@
 #include "gcode/interpreter/motion_words.h"
 #include "gcode/interpreter/plain_text.h"
 #include "gcode/interpreter/program_flow.h"
+#include "gcode/interpreter/tolerance_words.h"
 #include "gcode/interpreter/word_applier.h"
 #include "gcode/klartext/flow.h"
 #include "gcode/klartext/state.h"
@@ -21,6 +22,7 @@
 #include "gcode/state/dwell.h"
 #include "gcode/state/modal_state.h"
 #include "gcode/state/reason.h"
+#include "gcode/text/characters.h"
 #include "gcode/text/large_pages.h"
 
 namespace batten::gcode {
@@ -78,10 +80,16 @@ class BlockDiagnostics {
     report(id, program_.blocks[block_].span, std::move(message));
   }
 
+  // Nothing is left alone for it.
+  void note(std::string_view id, SourceSpan where, std::string message) {
+    report(id, where, std::move(message), Severity::kNote);
+  }
+
  private:
-  void report(std::string_view id, SourceSpan where, std::string message) {
+  void report(std::string_view id, SourceSpan where, std::string message,
+              Severity severity = Severity::kWarning) {
     if (std::exchange(is_reported_, true) || !limiter_.counts(id, where)) return;
-    found_.push_back({Severity::kWarning, id, where, std::move(message)});
+    found_.push_back({severity, id, where, std::move(message)});
   }
 
   const Program& program_;
@@ -112,6 +120,7 @@ class Interpreter {
     now_.own_words = options.own_words.get();
     carry.is_klartext = is_klartext();
     if (is_klartext()) start_klartext(now_);
+    least_by_control_ = now_.modal.stated.by_control_mm;
     read_.unit_word_seen = carry.unit_word_seen;
     read_.states.push_back(now_.modal);
     // Nearly every block of a long program moves.
@@ -205,6 +214,7 @@ class Interpreter {
     if (flow.jump_target) {
       meaning_.entered_from_elsewhere = true;
       is_klartext() ? forget_klartext(now_) : forget_everything(now_);
+      now_.modal.stated.by_control_mm = least_by_control_;
     }
     if (block.block_delete) {
       read_uncertain(block, reason::kBlockDelete);
@@ -213,12 +223,71 @@ class Interpreter {
     } else {
       read_words_or_text(block);
     }
+    if (options_.stated_tolerances) read_stated_tolerances(block);
     add_barriers_of_surroundings(block, flow);
     forget_motion_word();
     // No word of Siemens programs changes it: AC() and IC() say it of one number.
     if (is_siemens()) now_.modal.arc_distance = DistanceMode::kIncremental;
     meaning_.state_after = state_now();
     read_.blocks.push_back(meaning_);
+  }
+
+  // What a block says holds for its own motion, too: comments are for the text that follows them,
+  // wherever it is executed from.
+  void read_stated_tolerances(const Block& block) {
+    for (const Comment& comment : program_.comments_of(block)) {
+      if (comment.kind != CommentKind::kParenthesis && comment.kind != CommentKind::kSemicolon) {
+        continue;
+      }
+      const ToleranceWords said = tolerance_in_comment(program_.source.text(comment.span));
+      if (said.kind == ToleranceWords::Kind::kStated) now_.modal.stated.by_comment = said.length;
+      note_if_uncertain(said, comment.span);
+    }
+    const ToleranceWords told = tolerance_for_control(block);
+    take_control_tolerance(told, block);
+    note_if_uncertain(told, block.span);
+    // Of a comment before the first word of units: those that follow.
+    std::optional<StatedLength>& by_comment = now_.modal.stated.by_comment;
+    if (by_comment && by_comment->units == Units::kUnknown) by_comment->units = now_.modal.units;
+    // Calls and labels change it, too.
+    if (now_.modal.stated != read_.states.back().stated)
+      read_.stated.push_back({block_index_, now_.modal.stated});
+  }
+
+  [[nodiscard]] ToleranceWords tolerance_for_control(const Block& block) const {
+    if (block.opacity == ParseStatus::kNone) return {};
+    if (is_siemens()) return tolerance_in_cycle832(program_.source.text(block.span));
+    if (!is_klartext()) return {};
+    const SourceSpan content = klartext_parts(program_.source.text(), block.span).content;
+    return tolerance_in_cycle32(program_.source.text(content));
+  }
+
+  // Of a block that may be left out the lesser one counts, with it or without it.
+  void take_control_tolerance(const ToleranceWords& told, const Block& block) {
+    std::optional<double>& mm = now_.modal.stated.by_control_mm;
+    const std::optional<double> before = mm;
+    if (told.kind == ToleranceWords::Kind::kEnded && !block.block_delete) mm.reset();
+    if (told.kind != ToleranceWords::Kind::kStated) return;
+    mm = told.length.value;
+    if (block.block_delete && before) mm = std::min(*before, *mm);
+    remember_control_tolerance();
+  }
+
+  void remember_control_tolerance() {
+    const std::optional<double>& mm = now_.modal.stated.by_control_mm;
+    if (mm) least_by_control_ = std::min(*mm, least_by_control_.value_or(*mm));
+  }
+
+  void note_if_uncertain(const ToleranceWords& said, SourceSpan where) {
+    if (said.kind != ToleranceWords::Kind::kUncertain) return;
+    diagnostics_.note(
+        "tolerance-uncertain", where,
+        fmt::format("'{}' names a tolerance, but no length that is certain; expected one number of "
+                    "the program's units, as in {}. What was said before it still holds",
+                    shown(program_.source.text(where)),
+                    is_siemens()    ? "; TOLERANCE 0.005 or CYCLE832(0.005, _FINISH, 1)"
+                    : is_klartext() ? "; TOLERANCE 0.005 or CYCL DEF 32.1 T0.005"
+                                    : "(TOLERANCE 0.005)"));
   }
 
   // The index of the state that is known now.
@@ -243,6 +312,9 @@ class Interpreter {
       meaning_.barrier = reason::kSpline;
       meaning_.of_curve = true;
       meaning_.begins_curve = i == first;
+      block_index_ = i;
+      diagnostics_.begin_block(i);
+      if (options_.stated_tolerances) read_stated_tolerances(program_.blocks[i]);
       meaning_.state_after = state_now();
       if (next != curve.motions.end() && next->block == i) {
         meaning_.kind = BlockKind::kMotion;
@@ -282,7 +354,10 @@ class Interpreter {
     const ControlState before = call ? now_ : ControlState();
     read_without_call(block);
     if (!call) return;
+    const std::optional<StatedLength> by_comment = now_.modal.stated.by_comment;
     if (const auto behind = state_behind(*call, before)) now_ = *behind;
+    now_.modal.stated.by_comment = by_comment;  // comments there are of that text
+    remember_control_tolerance();
   }
 
   // Of a program that was read, and that the user says nothing of.
@@ -663,6 +738,7 @@ class Interpreter {
   BlockDiagnostics diagnostics_;
   ControlState now_;
   SiemensVariables variables_;
+  std::optional<double> least_by_control_;  // mm: of all that was told so far
   std::size_t silent_ = 0;  // so many blocks at the beginning say nothing to the control
   Interpretation read_;
   BlockMeaning meaning_;  // of the block that is being read

@@ -59,6 +59,9 @@ struct ReadOptions {
   // A program that others call is called under the modes of power-on. Otherwise nothing is known of
   // what it does not set itself, and its blocks are kept.
   bool usual_caller_modes = false;
+  // What the program says of how exact its parts have to be counts
+  // (gcode/interpreter/tolerance_words).
+  bool stated_tolerances = true;
   std::shared_ptr<const OwnWords> own_words = nullptr;  // what the user vouches for; nullptr: none
   std::shared_ptr<const Subprograms> subprograms = nullptr;  // the files of called programs
   bool short_ways = true;  // for plain lines (read_plain_line); they change nothing
@@ -76,6 +79,9 @@ struct ReadOptions {
 //
 // A block behind which the modes are not known, and moves are copied for that, gives the warning
 // modes-unknown.
+//
+// What names a tolerance, but none that is certain, gives the note tolerance-uncertain; what was
+// said before it still holds.
 //
 // What most controls would refuse (two words of one group, an arc whose radii differ by more
 // than 0.0283 mm and 0.1 %) gives a warning; the block is opaque then. The only error is

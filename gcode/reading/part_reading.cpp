@@ -54,6 +54,7 @@ void move_by(const Offsets& by, std::uint32_t sign, ReadPart& part) {
     if (block.motion >= 0) block.motion += static_cast<std::int32_t>(sign * by.motions);
   }
   for (Motion& each : part.meaning.motions) each.block += sign * by.blocks;
+  for (StatedAt& each : part.meaning.stated) each.block += sign * by.blocks;
 }
 
 }  // namespace
@@ -78,6 +79,9 @@ ReadPart take_rest(ReadPart& part, std::uint32_t first) {
   move_rest(program.comments, at.comments, rest.program.comments);
   move_rest(meaning.blocks, first, rest.meaning.blocks);
   move_rest(meaning.motions, at.motions, rest.meaning.motions);
+  const auto stated = std::ranges::lower_bound(meaning.stated, first, {}, &StatedAt::block);
+  move_rest(meaning.stated, static_cast<std::size_t>(stated - meaning.stated.begin()),
+            rest.meaning.stated);
   rest.meaning.states.assign(meaning.states.begin() + at.states, meaning.states.end());
   meaning.states.resize(at.states + 1);
   rest.meaning.unit_word_seen = meaning.unit_word_seen;
@@ -101,6 +105,7 @@ void append(ReadPart& part, ReadPart more) {
   move_behind(program.comments, more.program.comments);
   move_behind(meaning.blocks, more.meaning.blocks);
   move_behind(meaning.motions, more.meaning.motions);
+  move_behind(meaning.stated, more.meaning.stated);
   meaning.states.insert(meaning.states.end(), more.meaning.states.begin() + 1,
                         more.meaning.states.end());
   meaning.unit_word_seen = more.meaning.unit_word_seen;

@@ -30,15 +30,35 @@ void for_each_mode(ModalState& a, const ModalState& b, Visit visit) {
 constexpr std::size_t switches_of(const ModalState& state) {
   const auto& [motion, units, plane, distance, arc_distance, feed_mode, path, cutter, tool_center,
                tilted, scaling, rotation, mirror, polar, interpolation, cylindrical, smoothing,
-               macro, surface, diameter, laser, feed, without_point, spindle] = state;
+               macro, surface, diameter, laser, feed, without_point, spindle, stated] = state;
   const auto count = [](const auto&... items) {
     return (0 + ... + (std::is_same_v<decltype(items), const TriState&> ? 1 : 0));
   };
   return count(motion, units, plane, distance, arc_distance, feed_mode, path, cutter, tool_center,
                tilted, scaling, rotation, mirror, polar, interpolation, cylindrical, smoothing,
-               macro, surface, diameter, laser, feed, without_point, spindle);
+               macro, surface, diameter, laser, feed, without_point, spindle, stated);
 }
 static_assert(switches_of({}) == kModalSwitches.size());
+
+double to_mm(const StatedLength& length, Units units) {
+  const Units known = length.units != Units::kUnknown ? length.units : units;
+  return known == Units::kUnknown ? length.value : length.value * millimetres_per(known);
+}
+
+// Of each kind the lesser one, or the only one.
+StatedTolerances lesser_of(const StatedTolerances& a, const StatedTolerances& b) {
+  StatedTolerances least = a;
+  const auto is_less = [](const StatedLength& one, const StatedLength& other) {
+    return to_mm(one, Units::kUnknown) < to_mm(other, Units::kUnknown);
+  };
+  if (b.by_comment && (!a.by_comment || is_less(*b.by_comment, *a.by_comment))) {
+    least.by_comment = b.by_comment;
+  }
+  if (b.by_control_mm) {
+    least.by_control_mm = std::min(*b.by_control_mm, a.by_control_mm.value_or(*b.by_control_mm));
+  }
+  return least;
+}
 
 ModalState either(const ModalState& a, const ModalState& b) {
   ModalState both = a;
@@ -47,6 +67,7 @@ ModalState either(const ModalState& a, const ModalState& b) {
   });
   if (a.feed != b.feed || a.feed_without_point != b.feed_without_point) both.feed.reset();
   if (a.spindle_speed != b.spindle_speed) both.spindle_speed.reset();
+  both.stated = lesser_of(a.stated, b.stated);
   return both;
 }
 
@@ -54,6 +75,7 @@ ModalState either(const ModalState& a, const ModalState& b) {
 
 ModalState unknown_modal_state(const ModalState& before, ModeSet lacks) {
   ModalState state;  // as at power-on
+  state.stated = before.stated;
   for_each_mode(state, before, [lacks](auto& item, auto was, auto unknown, ModeSet bit) {
     if ((lacks & bit) == 0 || was != item) item = unknown;
   });
@@ -68,6 +90,12 @@ bool is_known(const ModalState& state, ModeSet asked) {
     known &= item != unknown || (asked & bit) == 0;
   });
   return known;
+}
+
+std::optional<double> least_mm(const StatedTolerances& stated, Units units) {
+  if (!stated.by_comment) return stated.by_control_mm;
+  const double by_comment = to_mm(*stated.by_comment, units);
+  return std::min(by_comment, stated.by_control_mm.value_or(by_comment));
 }
 
 bool path_alone_counts(const ModalState& state) {

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "gcode/state/block_words.h"
+#include "gcode/state/stated_tolerance.h"
 #include "gcode/text/number_format.h"
 #include "geometry/basic/point.h"
 #include "geometry/basic/rounding.h"
@@ -47,6 +48,8 @@ struct ModalState {
   // F1000 rather than F1000., on controls where these may be two feeds (Word::without_point).
   bool feed_without_point = false;
   std::optional<double> spindle_speed;  // S
+  // What the program says of how exact it has to be. No block makes it unknown.
+  StatedTolerances stated;
   bool operator==(const ModalState&) const = default;
 };
 
@@ -122,6 +125,15 @@ inline constexpr ModeSet kAll =
 
 // A state in which the path in X, Y, Z is all there is to a cutting motion. Unknown is not.
 [[nodiscard]] bool path_alone_counts(const ModalState& state);
+
+// mm: the lesser of both, in a program with these units; nothing where neither is said. A length
+// without any units counts as millimetres, the lesser reading.
+[[nodiscard]] std::optional<double> least_mm(const StatedTolerances& stated, Units units);
+
+// How exact the program says that a motion in this state has to be.
+[[nodiscard]] inline std::optional<double> stated_tolerance_mm(const ModalState& state) {
+  return least_mm(state.stated, state.units);
+}
 
 // The programmed position, mm. An axis that is not known has no value: before its first
 // word, and after blocks that moved it in ways that were not understood.

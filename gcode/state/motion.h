@@ -112,12 +112,24 @@ struct BlockMeaning {
   std::uint32_t state_after = 0;  // index into Interpretation::states
 };
 
+// A block that says another tolerance than held before it.
+struct StatedAt {
+  std::uint32_t block = 0;
+  StatedTolerances stated;  // from it on
+};
+
 struct Interpretation {
   std::vector<BlockMeaning> blocks;  // one per block of the program
   std::vector<Motion> motions;       // in order
   std::vector<ModalState> states;    // states[0] is the state before the first block
+  std::vector<StatedAt> stated;      // in order
   // G20 or G21 (or G70/G71 without parameters) stood somewhere, or --units was given.
   bool unit_word_seen = false;
 };
+
+// mm: the least tolerance that the program says for a motion of these blocks, the last one
+// included; nothing where it says none.
+[[nodiscard]] std::optional<double> least_stated_mm(const Interpretation& read, std::uint32_t first,
+                                                    std::uint32_t last);
 
 }  // namespace batten::gcode

@@ -81,6 +81,11 @@ constexpr Explanation kExplanations[] = {
      kCopied},
     {kStateChange, "The block changes a mode (units, plane, distance, feed, path ..).", kCopied},
     {kComment, "Comments or empty lines alone.", kCopied},
+    {kStatedTolerance,
+     "The program says a tolerance here that is less than --tolerance: beside a move, or less than "
+     "what the decimals of the target can keep.",
+     "Write the comment on a line of its own; or --one-tolerance, which takes --tolerance for all "
+     "parts."},
     {kChecksum, "The line has a check sum: the sender counts such lines.",
      "Take numbers and sums off; the sender adds them when it sends."},
     {kSubprogram,

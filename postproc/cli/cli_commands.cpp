@@ -393,6 +393,7 @@ void read_smooth_options(SmoothingCommand& command, Arguments& in, bool by_marks
   set_up_target(options.target, command.own_target, command.profile, options.machine);
   const auto tolerance = tolerance_in(in.given.value("tolerance"), in, options.tolerance_inch);
   options.tolerance_mm = tolerance.value_or(options.tolerance_mm);
+  options.one_tolerance = in.given.flag("one-tolerance");
   choose(options.tolerance_kind, "tolerance-kind", tolerance_kinds(), in);
   choose(options.side, "side", sides(), in);
   read_language_into(options, in);
@@ -495,6 +496,7 @@ VerifyCommand verify_command(Arguments& in) {
     in.complain("--tolerance: '{}', expected a length above 0, such as 0.01",
                 in.given.text("tolerance"));
   }
+  command.one_tolerance = in.given.flag("one-tolerance");
   check_files({"OLD", "NEW"}, in);
   check_reports(command, in.files, in);
   std::vector<std::string> others = in.files;

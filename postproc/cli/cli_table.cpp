@@ -45,6 +45,11 @@ constexpr OptionRow kTolerance = setting(
     "tolerance", kValue, "LENGTH",
     "greatest distance between old and new path: 0.01, 0.01mm or 0.0005in (without a unit: mm)",
     "0.01mm");
+constexpr OptionRow kOneTolerance =
+    setting("one-tolerance", kFlag, "",
+            "keep --tolerance in all parts, also where the program says less for a part (a comment "
+            "TOLERANCE 0.005, CYCLE832, cycle 32)",
+            "false");
 constexpr OptionRow kToleranceKind = setting(
     "tolerance-kind", kValue, "path|band",
     "what the tolerance means: both ways, or corners may be further from the new path", "path");
@@ -112,6 +117,7 @@ std::vector<OptionRow> smooth_rows() {
       kTarget,
       kProfile,
       kTolerance,
+      kOneTolerance,
       kToleranceKind,
       kSide,
       kMachine,
@@ -168,6 +174,7 @@ std::vector<OptionRow> setup_rows() {
 std::vector<OptionRow> verify_rows() {
   return {
       kTolerance,
+      kOneTolerance,
       option("second-check", kFlag, "",
              "check flat sections a second way, too: by the region of the tolerance as polygons"),
       kProfile,

@@ -104,6 +104,7 @@ struct ReadingCommand {
   const gcode::Control* target = nullptr;   // whose curves are read; nullptr: none are
   std::vector<std::string> allowed;  // of these `subprogram` and `caller-modes` change what is read
   std::shared_ptr<const gcode::OwnWords> own_words;
+  bool one_tolerance = false;  // as SmoothOptions::one_tolerance
   std::string json_file;
   PageRequest page;
   LogLevel log_level = LogLevel::kInfo;

@@ -141,6 +141,7 @@ PartReading reading_of(const gcode::SourceText& source, const ReadingCommand& co
                      .calls_keep_modes = calls_keep_modes(command.allowed),
                      .asked = asked_modes(command.allowed),
                      .usual_caller_modes = usual_caller_modes(command.allowed),
+                     .stated_tolerances = !command.one_tolerance,
                      .own_words = command.own_words};
   read_as(command.target, kind, reading.options);
   return reading;

@@ -196,6 +196,7 @@ class SmoothWork {
     verify.target = options.target;
     verify.allowed = options.allowed;
     verify.own_words = options.own_words;
+    verify.one_tolerance = options.one_tolerance;
     verify.old_program = command_.input;  // whose called programs are read
     verify.force = command_.force;
     verify.tolerance_mm = options.tolerance_mm;

@@ -75,6 +75,19 @@ std::string second_check_text(const Verification& verification, const VerifyComm
       flat, verification.stretches.size());
 }
 
+// ", 2 of them within 0.002 to 0.005 mm as the old program says"
+std::string closer_sections_text(const Verification& verification, const VerifyCommand& command) {
+  std::vector<double> closer;
+  for (const Stretch& stretch : verification.stretches) {
+    if (stretch.tolerance_mm < command.tolerance_mm) closer.push_back(stretch.tolerance_mm);
+  }
+  if (closer.empty()) return "";
+  const auto [least, greatest] = std::ranges::minmax(closer);
+  const std::string to = greatest > least ? fmt::format(" to {:g}", greatest) : "";
+  return fmt::format(", {} of them within {:g}{} mm as the old program says", closer.size(), least,
+                     to);
+}
+
 std::string summary_of(const Verification& verification, const VerifyCommand& command) {
   if (!verification.proved()) {
     return fmt::format("NOT PROVED: {} of the new program against the old one\n",
@@ -87,16 +100,17 @@ std::string summary_of(const Verification& verification, const VerifyCommand& co
           : "";
   return fmt::format(
              "proved: {} keeps {:g} mm to {}, {}\n"
-             "  greatest deviation {:.4f} mm{}{}; {} changed sections, {} acting words and blocks "
-             "the "
-             "same\n",
+             "  greatest deviation {:.4f} mm{}{}; {} changed sections{}, {} acting words and "
+             "blocks "
+             "the same\n",
              command.new_program, command.tolerance_mm, command.old_program,
              band ? "in order, in the band reading" : "both ways and in order",
              verification.deviation_mm,
              verification.deviation_line > 0
                  ? fmt::format(" near line {}", verification.deviation_line)
                  : "",
-             corners, verification.stretches.size(), verification.events_compared) +
+             corners, verification.stretches.size(), closer_sections_text(verification, command),
+             verification.events_compared) +
          second_check_text(verification, command);
 }
 
@@ -106,6 +120,7 @@ Json json_of(const Stretch& stretch) {
           {"old_last_line", stretch.old_last_line},
           {"new_first_line", stretch.new_first_line},
           {"new_last_line", stretch.new_last_line},
+          {"tolerance_mm", stretch.tolerance_mm},
           {"proved", comparison.verdict == geometry::Verdict::kProved},
           {"at_least_mm", comparison.bounds.at_least},
           {"at_most_mm", comparison.bounds.at_most},  // infinite: null
@@ -129,6 +144,7 @@ Json json_of(const Verification& verification, const VerifyCommand& command,
   Json json = as_report("verify", {{"old", command.old_program},
                                    {"new", command.new_program},
                                    {"tolerance_mm", command.tolerance_mm},
+                                   {"one_tolerance", command.one_tolerance},
                                    {"tolerance_kind", name_of(command.tolerance_kind)},
                                    {"side", name_of(command.side)},
                                    {"words", own_words_json(command.own_words)},

@@ -271,6 +271,7 @@ gcode::ReadOptions read_options_of(const SmoothOptions& options) {
   reading.calls_keep_modes = calls_keep_modes(options.allowed);
   reading.asked = asked_modes(options.allowed);
   reading.usual_caller_modes = usual_caller_modes(options.allowed);
+  reading.stated_tolerances = !options.one_tolerance;
   reading.own_words = options.own_words;
   reading.subprograms = options.subprograms;
   if (options.convert) {
@@ -353,13 +354,14 @@ std::vector<std::string> problems_of(const SmoothOptions& options) {
   return problems;
 }
 
-ToleranceShares share_tolerance(const SmoothOptions& options, gcode::Units units,
-                                int run_decimals) {
+ToleranceShares share_tolerance(const SmoothOptions& options, gcode::Units units, int run_decimals,
+                                std::optional<double> tolerance_mm) {
   ToleranceShares shares;
   const gcode::Units written =
       units == gcode::Units::kInch ? gcode::Units::kInch : gcode::Units::kMillimetre;
   shares.rounding = rounding_of(options, written, run_decimals);
-  const double rest = options.tolerance_mm * (1 - kProofLooseness) - shares.rounding;
+  const double tolerance = tolerance_mm.value_or(options.tolerance_mm);
+  const double rest = tolerance * (1 - kProofLooseness) - shares.rounding;
   if (rest > 0) {
     shares.form = kFormPart * rest;
     shares.smoothing = rest - shares.form;

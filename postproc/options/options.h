@@ -75,6 +75,8 @@ struct SmoothOptions {
   const Machine* machine = nullptr;        // required; never null after options are checked
   double tolerance_mm = 0.01;              // the full distance allowed, both ways, in order
   std::optional<double> tolerance_inch;    // as given, where it was given in inches
+  // It counts for all parts; else the lesser one where the program says one for a part.
+  bool one_tolerance = false;
   geometry::ToleranceKind tolerance_kind = geometry::ToleranceKind::kPath;
   geometry::Side side = geometry::Side::kBoth;          // where the new path may be; needs kPath
   gcode::Units units = gcode::Units::kUnknown;          // --units
@@ -162,9 +164,11 @@ struct ToleranceShares {
 };
 
 // `units` are those of the written program; unknown ones count as millimetres. `run_decimals`
-// is for runs that are written with more decimals than the target's usual ones.
+// is for runs that are written with more decimals than the target's usual ones, `tolerance_mm` for
+// those that have to keep another tolerance than the user's.
 [[nodiscard]] ToleranceShares share_tolerance(const SmoothOptions& options, gcode::Units units,
-                                              int run_decimals = 0);
+                                              int run_decimals = 0,
+                                              std::optional<double> tolerance_mm = {});
 
 // How much is said on standard error.
 

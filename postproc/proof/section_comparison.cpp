@@ -104,6 +104,24 @@ struct Part {
   }
 };
 
+// mm: what the program says for the i-th cut of a side; nothing where it says none.
+std::optional<double> stated_at(const StretchSide& side, std::size_t i) {
+  const gcode::Interpretation& read = *side.read->interpretation;
+  const std::uint32_t block = motion_of(side.cuts[i], *side.read).block;
+  return gcode::stated_tolerance_mm(read.states[read.blocks[block].state_after]);
+}
+
+// mm: the least that the old program allows in the part.
+double least_tolerance(const Part& part, double promised) {
+  const gcode::Interpretation& read = *part.side->read->interpretation;
+  if (part.size() == 0) {
+    return std::min(promised, part.side->stated_tolerance_mm.value_or(promised));
+  }
+  const std::optional<double> least =
+      gcode::least_stated_mm(read, part.block(0), part.block(part.last()));
+  return std::min(promised, least.value_or(promised));
+}
+
 Part all_of(const StretchSide& side) { return {&side, 0, side.cuts.size()}; }
 
 // The longest parts that have one feed, in order.
@@ -114,6 +132,23 @@ std::vector<Part> parts_of_one_feed(const StretchSide& side) {
       parts.push_back({&side, i, i});
     }
     parts.back().end = i + 1;
+  }
+  return parts;
+}
+
+// A part in which other tolerances hold than in those beside it, of those that are less than the
+// promised one.
+struct ToleratedPart {
+  Part part;
+  double tolerance_mm = 0;
+};
+
+std::vector<ToleratedPart> parts_of_one_tolerance(const Part& whole, double promised) {
+  std::vector<ToleratedPart> parts;
+  for (std::size_t i = whole.begin; i < whole.end; ++i) {
+    const double mm = std::min(promised, stated_at(*whole.side, i).value_or(promised));
+    if (parts.empty() || parts.back().tolerance_mm != mm) parts.push_back({{whole.side, i, i}, mm});
+    parts.back().part.end = i + 1;
   }
   return parts;
 }
@@ -147,7 +182,7 @@ geometry::BandComparison compare(const PartPair& pair, const Promise& promise) {
   return {geometry::compare_paths(before, after, promise.tolerance_mm), 0, 0};
 }
 
-Stretch stretch_of(const PartPair& pair, geometry::BandComparison compared) {
+Stretch stretch_of(const PartPair& pair, double tolerance_mm, geometry::BandComparison compared) {
   const auto& [before, after] = pair;
   Stretch stretch;
   stretch.old_first_block = before.block(0);
@@ -160,6 +195,7 @@ Stretch stretch_of(const PartPair& pair, geometry::BandComparison compared) {
   stretch.new_last_line = after.line(after.last());
   stretch.old_worst_line = before.line(compared.paths.worst_piece_a);
   stretch.new_worst_line = after.line(compared.paths.worst_piece_b);
+  stretch.tolerance_mm = tolerance_mm;
   stretch.comparison = std::move(compared.paths);
   stretch.corner_mm = compared.corner_at_most;
   return stretch;
@@ -361,10 +397,90 @@ std::optional<Violation> side_violation(const PartPair& pair, const TargetChords
                    message};
 }
 
+// A pair of parts for which one tolerance counts.
+class PairComparer {
+ public:
+  // `promise`: with that tolerance.
+  explicit PairComparer(const Promise& promise)
+      : promise_(promise), tolerance_(promise.tolerance_mm) {}
+
+  StretchResult compare_part(const PartPair& pair) {
+    const PartPair middle = without_same_ends(pair);
+    if (middle.before.size() == 0 && middle.after.size() == 0) return {};
+    geometry::BandComparison comparison = compare(middle, promise_);
+    if (comparison.paths.verdict == Verdict::kProved) {
+      look_beside_the_distance(pair, middle, comparison.paths);
+      result_.stretches.push_back(stretch_of(middle, tolerance_, std::move(comparison)));
+      look_twice(middle);
+      return std::move(result_);
+    }
+    // The same ends may be passed otherwise than together: only the whole is a refutation.
+    comparison = compare(pair, promise_);
+    if (comparison.paths.verdict != Verdict::kProved) {
+      result_.violations.push_back(distance_violation(pair, comparison.paths, tolerance_));
+      result_.stretches.push_back(stretch_of(pair, tolerance_, std::move(comparison)));
+      return std::move(result_);
+    }
+    look_beside_the_distance(pair, pair, comparison.paths);
+    result_.stretches.push_back(stretch_of(pair, tolerance_, std::move(comparison)));
+    look_twice(pair);
+    return std::move(result_);
+  }
+
+ private:
+  // Of the stretch that was added last: both ways in the strict reading; in the band reading a
+  // corner of the old path may be farther from the new one.
+  void look_twice(const PartPair& pair) {
+    if (!promise_.twice) return;
+    const Path before = pair.before.path();
+    const Path after = pair.after.path();
+    auto check = geometry::check_in_region(before, after, tolerance_);
+    if (!check) return;
+    if (check->holds() && promise_.kind == geometry::ToleranceKind::kPath) {
+      check = geometry::check_in_region(after, before, tolerance_);
+    }
+    if (!check || check->holds()) {
+      result_.stretches.back().in_region = true;
+      return;
+    }
+    const geometry::Point3& place = check->place;
+    result_.violations.push_back(
+        {ViolationKind::kNotProved, "second-check", pair.before.line_near(place),
+         pair.after.line_near(place), 0,
+         fmt::format("the distance is proved, but {} at X{:.4f} Y{:.4f} Z{:.4f}: one of the two is "
+                     "wrong. Do not run the new program, and send both to who maintains Batten",
+                     check->is_inside
+                         ? "a hole of the region of the tolerance is passed on the "
+                           "other side"
+                         : "one path leaves the region of the tolerance about the other",
+                     place.x(), place.y(), place.z())});
+  }
+
+  // What else a path that keeps the distance may do wrong. `proved`: the part that keeps it.
+  void look_beside_the_distance(const PartPair& pair, const PartPair& proved,
+                                const PathComparison& found) {
+    const TargetChords chords = chords_of_target(proved, promise_.target);
+    for (Violation& violation : chords_violations(proved, chords, found, promise_)) {
+      result_.violations.push_back(std::move(violation));
+    }
+    if (auto violation = side_violation(proved, chords, promise_)) {
+      result_.violations.push_back(std::move(*violation));
+    }
+    // Of the whole, for a new part may also cross one that is the same.
+    for (Violation& violation : crossing_violations(pair, proved, tolerance_)) {
+      result_.violations.push_back(std::move(violation));
+    }
+  }
+
+  Promise promise_;
+  double tolerance_;  // of the promise
+  StretchResult result_;
+};
+
 class StretchComparer {
  public:
   StretchComparer(const StretchSide& before, const StretchSide& after, const Promise& promise)
-      : before_(before), after_(after), promise_(promise), tolerance_(promise.tolerance_mm) {}
+      : before_(before), after_(after), promise_(promise) {}
 
   StretchResult run() {
     const std::vector<Part> old_parts = parts_of_one_feed(before_);
@@ -417,89 +533,80 @@ class StretchComparer {
   }
 
   void compare_part(const PartPair& pair) {
-    const PartPair middle = without_same_ends(pair);
-    if (middle.before.size() == 0 && middle.after.size() == 0) return;
-    geometry::BandComparison comparison = compare(middle, promise_);
-    if (comparison.paths.verdict == Verdict::kProved) {
-      look_beside_the_distance(pair, middle, comparison.paths);
-      result_.stretches.push_back(stretch_of(middle, std::move(comparison)));
-      look_twice(middle);
-      return;
-    }
-    // The same ends may be passed otherwise than together: only the whole is a refutation.
-    comparison = compare(pair, promise_);
-    if (comparison.paths.verdict != Verdict::kProved) {
-      result_.violations.push_back(distance_violation(pair, comparison.paths, tolerance_));
-      result_.stretches.push_back(stretch_of(pair, std::move(comparison)));
-      return;
-    }
-    look_beside_the_distance(pair, pair, comparison.paths);
-    result_.stretches.push_back(stretch_of(pair, std::move(comparison)));
-    look_twice(pair);
+    StretchResult found = compared_in_parts(pair);
+    std::ranges::move(found.stretches, std::back_inserter(result_.stretches));
+    std::ranges::move(found.violations, std::back_inserter(result_.violations));
   }
 
-  // Of the stretch that was added last: both ways in the strict reading; in the band reading a
-  // corner of the old path may be farther from the new one.
-  void look_twice(const PartPair& pair) {
-    if (!promise_.twice) return;
-    const Path before = pair.before.path();
-    const Path after = pair.after.path();
-    auto check = geometry::check_in_region(before, after, tolerance_);
-    if (!check) return;
-    if (check->holds() && promise_.kind == geometry::ToleranceKind::kPath) {
-      check = geometry::check_in_region(after, before, tolerance_);
+  // A path that keeps the least tolerance of its parts keeps that of each.
+  [[nodiscard]] StretchResult compared_in_parts(const PartPair& pair) const {
+    const double promised = promise_.tolerance_mm;
+    const double least = least_tolerance(pair.before, promised);
+    // Of a side the corner where a path is cut would be in none of its parts.
+    const bool any_change = !before_.read->interpretation->stated.empty();
+    if (!any_change || promise_.side != geometry::Side::kBoth) return compared_within(least, pair);
+    const auto old_parts = parts_of_one_tolerance(pair.before, promised);
+    if (old_parts.size() < 2) return compared_within(least, pair);
+    const auto new_parts = parts_of_one_tolerance(pair.after, promised);
+    const bool says_the_same = std::ranges::equal(
+        old_parts, new_parts, {}, &ToleratedPart::tolerance_mm, &ToleratedPart::tolerance_mm);
+    if (!says_the_same) return compared_within(least, pair);
+    StretchResult all = compared_apart(old_parts, new_parts);
+    // The new path of one part may cross that of another.
+    if (all.violations.empty()) {
+      all.violations = crossing_violations(pair, without_same_ends(pair), promised);
     }
-    if (!check || check->holds()) {
-      result_.stretches.back().in_region = true;
-      return;
-    }
-    const geometry::Point3& place = check->place;
-    result_.violations.push_back(
-        {ViolationKind::kNotProved, "second-check", pair.before.line_near(place),
-         pair.after.line_near(place), 0,
-         fmt::format("the distance is proved, but {} at X{:.4f} Y{:.4f} Z{:.4f}: one of the two is "
-                     "wrong. Do not run the new program, and send both to who maintains Batten",
-                     check->is_inside
-                         ? "a hole of the region of the tolerance is passed on the "
-                           "other side"
-                         : "one path leaves the region of the tolerance about the other",
-                     place.x(), place.y(), place.z())});
+    if (all.violations.empty()) return all;
+    StretchResult whole = compared_within(least, pair);
+    // Where the new program says it elsewhere on the path its parts are no help to who reads this.
+    const double of_whole = greatest_deviation(whole.violations);
+    const bool is_nearer = of_whole > 0 && of_whole < greatest_deviation(all.violations);
+    return whole.violations.empty() || is_nearer ? whole : all;
   }
 
-  // What else a path that keeps the distance may do wrong. `proved`: the part that keeps it.
-  void look_beside_the_distance(const PartPair& pair, const PartPair& proved,
-                                const PathComparison& found) {
-    const TargetChords chords = chords_of_target(proved, promise_.target);
-    for (Violation& violation : chords_violations(proved, chords, found, promise_)) {
-      result_.violations.push_back(std::move(violation));
+  // mm; 0 where nothing is known to break the tolerance.
+  static double greatest_deviation(const std::vector<Violation>& violations) {
+    double greatest = 0;
+    for (const Violation& each : violations) greatest = std::max(greatest, each.deviation_mm);
+    return greatest;
+  }
+
+  [[nodiscard]] StretchResult compared_apart(const std::vector<ToleratedPart>& old_parts,
+                                             const std::vector<ToleratedPart>& new_parts) const {
+    StretchResult all;
+    for (std::size_t i = 0; i < old_parts.size(); ++i) {
+      StretchResult part =
+          compared_within(old_parts[i].tolerance_mm, {old_parts[i].part, new_parts[i].part});
+      std::ranges::move(part.stretches, std::back_inserter(all.stretches));
+      std::ranges::move(part.violations, std::back_inserter(all.violations));
     }
-    if (auto violation = side_violation(proved, chords, promise_)) {
-      result_.violations.push_back(std::move(*violation));
-    }
-    // Of the whole, for a new part may also cross one that is the same.
-    for (Violation& violation : crossing_violations(pair, proved, tolerance_)) {
-      result_.violations.push_back(std::move(violation));
-    }
+    return all;
+  }
+
+  [[nodiscard]] StretchResult compared_within(double tolerance_mm, const PartPair& pair) const {
+    Promise promise = promise_;
+    promise.tolerance_mm = tolerance_mm;
+    return PairComparer(promise).compare_part(pair);
   }
 
   // Parts that break the tolerance of a path that keeps it: a feed begins at another place.
   void look_for_moved_feed() {
     const PathComparison whole = compare_whole_path(before_, after_, promise_);
     if (whole.verdict != Verdict::kProved) return;
+    const double least = least_tolerance(all_of(before_), promise_.tolerance_mm);
     for (Violation& violation : result_.violations) {
       if (!is_of_distance(violation)) continue;
       violation.kind = ViolationKind::kFeed;
       violation.id = "feed-moved";
       violation.message = fmt::format(
           "the path is the same within {:.6g} mm, but a feed begins or ends at another position",
-          tolerance_);
+          least);
     }
   }
 
   const StretchSide& before_;
   const StretchSide& after_;
-  Promise promise_;
-  double tolerance_;  // of the promise
+  const Promise& promise_;
   StretchResult result_;
 };
 
@@ -512,7 +619,9 @@ StretchResult compare_stretch(const StretchSide& before, const StretchSide& afte
 
 geometry::PathComparison compare_whole_path(const StretchSide& before, const StretchSide& after,
                                             const Promise& promise) {
-  return compare({all_of(before), all_of(after)}, promise).paths;
+  Promise least = promise;
+  least.tolerance_mm = least_tolerance(all_of(before), promise.tolerance_mm);
+  return compare({all_of(before), all_of(after)}, least).paths;
 }
 
 std::optional<std::vector<MatchedPart>> match_stretch(const StretchSide& before,

@@ -17,7 +17,8 @@ namespace batten::postproc {
 
 // What the paths must keep.
 struct Promise {
-  double tolerance_mm = 0.01;  // > 0
+  // > 0. Where the old program says less for a part of itself, the part must keep that.
+  double tolerance_mm = 0.01;
   geometry::ToleranceKind kind = geometry::ToleranceKind::kPath;
   // Where the new path may be: on the other side it may be by kOverSide of the tolerance.
   geometry::Side side = geometry::Side::kBoth;
@@ -42,9 +43,10 @@ struct Stretch {
   // Their lines; where one program has no moves there, that of the event before.
   std::uint32_t old_first_line = 0, old_last_line = 0;
   std::uint32_t new_first_line = 0, new_last_line = 0;
+  double tolerance_mm = 0;  // that it had to keep
   geometry::PathComparison comparison;
-  double corner_mm = 0;  // band reading: greatest distance of a corner that was cut; 0: none was
-  bool in_region = false;            // what Promise::twice asks for: it is flat, and was found there
+  double corner_mm = 0;    // band reading: greatest distance of a corner that was cut; 0: none was
+  bool in_region = false;  // what Promise::twice asks for: it is flat, and was found there
   std::uint32_t old_worst_line = 0;  // where the greatest distance was met
   std::uint32_t new_worst_line = 0;
 };
@@ -56,6 +58,8 @@ struct StretchSide {
   // Where the tool stands before the first of them; not always known.
   std::optional<geometry::Point3> start;
   std::uint32_t line = 0;  // to name when there are no cuts: of the event before
+  // mm, of where it ends: what counts when there are no cuts.
+  std::optional<double> stated_tolerance_mm = {};
 };
 
 struct StretchResult {
@@ -65,10 +69,15 @@ struct StretchResult {
 
 // Neighbouring cuts of one feed are taken together. The feeds must come in the same order, and
 // the path of each must keep the tolerance by itself: so a feed begins where it began.
+//
+// How much that is the old program says, part by part (gcode::stated_tolerance_mm). Where it
+// changes within a feed, the new path is cut where the new program says the same tolerances in the
+// same order, and each part must keep its own; where it does not say them, or that fails, the whole
+// must keep the least of them. What the new program says is no more than a hint where to cut.
 [[nodiscard]] StretchResult compare_stretch(const StretchSide& before, const StretchSide& after,
                                             const Promise& promise);
 
-// Only the path, whatever the feeds are.
+// Only the path, whatever the feeds are; within the least tolerance of all its parts.
 [[nodiscard]] geometry::PathComparison compare_whole_path(const StretchSide& before,
                                                           const StretchSide& after,
                                                           const Promise& promise);

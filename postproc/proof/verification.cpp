@@ -39,11 +39,19 @@ class Follower {
     for (; next_event_ < index; ++next_event_) pass(list_.events[next_event_]);
     cut_ = list_.cuts_before[index];
     side.cuts = {list_.cuts.data() + begin, cut_ - begin};
+    side.stated_tolerance_mm = gcode::stated_tolerance_mm(state_at(index));
     if (index < list_.events.size()) pass(list_.events[next_event_++]);
     return side;
   }
 
  private:
+  // Before the event, or at the end.
+  [[nodiscard]] const gcode::ModalState& state_at(std::size_t index) const {
+    const gcode::Interpretation& read = *read_.interpretation;
+    if (index < list_.events.size()) return read.states[list_.events[index].state_before];
+    return read.states[read.blocks.empty() ? 0 : read.blocks.back().state_after];
+  }
+
   void pass(const ProgramEvent& event) {
     block_ = event.block;
     line_ = read_.program->blocks[event.block].line;
@@ -153,7 +161,10 @@ class Verifier {
     const double end = (old_path.end() - new_path.end()).norm();
     // Rounding of the printed decimals is far above, that of doubles far below this share.
     constexpr double kRounding = 1e-9;
-    if (std::max(start, end) <= promise_.tolerance_mm * (1 + kRounding)) return;
+    const double promised = promise_.tolerance_mm;
+    const double allowed =
+        std::min(promised, gcode::stated_tolerance_mm(before.state_before()).value_or(promised));
+    if (std::max(start, end) <= allowed * (1 + kRounding)) return;
     result_.violations.push_back(rapid_violation(before, after));
   }
 

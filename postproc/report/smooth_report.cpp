@@ -49,13 +49,14 @@ std::vector<ReasonCount> count_reasons(std::span<const RunReport> runs) {
 Json json_of(const SmoothOptions& options, bool strict) {
   // An option that is added does not compile here: say it below, and where the library is to have
   // it, in Options of api/include/batten/batten.h and `inner` of api/batten.cpp.
-  const auto& [target, machine, tolerance_mm, tolerance_inch, tolerance_kind, side, units, source,
-               decimals, method, output, prefer, guo_lambda, linearize, keep_corners_deg, allowed,
-               own_words, subprograms, keep_expressions, convert, words, profile, threads,
-               once_for_repeats, quick] = options;
+  const auto& [target, machine, tolerance_mm, tolerance_inch, one_tolerance, tolerance_kind, side,
+               units, source, decimals, method, output, prefer, guo_lambda, linearize,
+               keep_corners_deg, allowed, own_words, subprograms, keep_expressions, convert, words,
+               profile, threads, once_for_repeats, quick] = options;
   Json json = {
       {"target", target->name}, {"machine", machine->name}, {"tolerance_mm", tolerance_mm}};
   if (tolerance_inch) json["tolerance_inch"] = *tolerance_inch;
+  json["one_tolerance"] = one_tolerance;
   json["tolerance_kind"] = name_of(tolerance_kind);
   json["side"] = name_of(side);
   json["method"] = name_of(method);
@@ -87,6 +88,7 @@ Json json_of(const RunReport& run) {
   return {{"first_line", run.first_line},
           {"last_line", run.last_line},
           {"points", run.points},
+          {"tolerance_mm", run.tolerance_mm},
           {"status", rewritten ? "rewritten" : "kept"},
           {"reason", run.reason},
           {"method", run.method},
@@ -106,6 +108,11 @@ Json json_of(const RunReport& run) {
           {"path_after", json_of(run.path_after)},
           {"time_before_s", run.time_before_s},
           {"time_after_s", run.time_after_s}};
+}
+
+Json json_of(const StatedFrom& from) {
+  return {{"line", from.line},
+          {"tolerance_mm", from.tolerance_mm ? Json(*from.tolerance_mm) : Json(nullptr)}};
 }
 
 Json json_of(const ReasonCount& count) {
@@ -177,6 +184,39 @@ void add_runs(const SmoothResult& result, std::string& lines) {
   lines += titled("runs",
                   fmt::format("{} rewritten, {} kept", rewritten, result.runs.size() - rewritten));
   add_causes(result.kept, lines);
+}
+
+// "in 2 parts (lines 12, 40)"
+std::string parts_text(const std::vector<std::uint32_t>& lines) {
+  constexpr std::size_t kMost = 4;
+  const std::size_t shown = std::min(lines.size(), kMost);
+  return fmt::format(
+      "in {} ({} {}{})", plural(lines.size(), "part"), lines.size() == 1 ? "line" : "lines",
+      fmt::join(lines.begin(), lines.begin() + static_cast<std::ptrdiff_t>(shown), ", "),
+      lines.size() > kMost ? ", .." : "");
+}
+
+// What the program says of how exact its parts have to be. Nothing where it says nothing.
+void add_tolerances(const SmoothReport& report, std::string& lines) {
+  const double users = report.options.tolerance_mm;
+  std::map<double, std::vector<std::uint32_t>> less;  // lines of parts, by their tolerance
+  std::vector<std::uint32_t> in_vain;
+  for (const StatedFrom& from : report.result.stated) {
+    if (!from.tolerance_mm) continue;
+    (*from.tolerance_mm < users ? less[*from.tolerance_mm] : in_vain).push_back(from.line);
+  }
+  std::string text;
+  for (const auto& [mm, of_parts] : less) {
+    text += fmt::format("; {:g} mm {}", mm, parts_text(of_parts));
+  }
+  if (!text.empty()) {
+    lines += titled("tolerance", fmt::format("{:g} mm{}, as the program says", users, text));
+  }
+  if (in_vain.empty()) return;
+  lines +=
+      titled(text.empty() ? "tolerance" : "",
+             fmt::format("{}what the program says {} is no less",
+                         text.empty() ? fmt::format("{:g} mm; ", users) : "", parts_text(in_vain)));
 }
 
 // What can no longer be turned by variables.
@@ -278,6 +318,7 @@ Json smooth_json(const SmoothReport& report) {
                 {{"name", report.options.machine->name},
                  {"model", name_of(report.options.machine->model)},
                  {"description", report.options.machine->description}}},
+               {"stated_tolerances", json_list(result.stated, item)},
                {"runs", json_list(result.runs, item)},
                {"reasons", json_list(count_reasons(result.runs), item)},
                {"kept", kept_json(result.kept)},
@@ -435,6 +476,7 @@ std::string summary_text(const SmoothReport& report) {
   lines += titled("blocks", change(result.blocks_in, result.blocks_out));
   lines += titled("bytes", change(report.source.text().size(), result.bytes_out));
   if (result.path_before.length_mm > 0) lines += path_lines(result.path_before, result.path_after);
+  add_tolerances(report, lines);
   add_runs(result, lines);
   add_expressions(result, lines);
   lines += titled("time", times(result, *report.options.machine));

@@ -45,12 +45,13 @@ struct SmoothReport {
 // The report for programs: one JSON object, its fields always in the same order, the same bytes for
 // the same input and options (threads do not show).
 //
-//   batten, options, input, output, runs[], reasons[], kept (report/kept_report.h), deviation_mm,
-//   deviation_line, time_before_s, time_after_s (as `batten time` predicts them), cutting_before_s,
-//   cutting_after_s, slow_share_before, slow_share_after (of the cutting time: below half of the
-//   programmed feed), path_before, path_after {length_mm, distance_mm, roughness}, proved,
-//   understood, diagnostics[], options_from {option: file} of what the command line did not give;
-//   profile, dropped {names[], words} and called[] {call, file, why_not} where there are any
+//   batten, options, input, output, stated_tolerances[], runs[], reasons[], kept
+//   (report/kept_report.h), deviation_mm, deviation_line, time_before_s, time_after_s (as `batten
+//   time` predicts them), cutting_before_s, cutting_after_s, slow_share_before, slow_share_after
+//   (of the cutting time: below half of the programmed feed), path_before, path_after {length_mm,
+//   distance_mm, roughness}, proved, understood, diagnostics[], options_from {option: file} of what
+//   the command line did not give; profile, dropped {names[], words} and called[] {call, file,
+//   why_not} where there are any
 //
 // Bytes of names and messages that are not UTF-8 become U+FFFD; numbers that are not finite
 // become null.

@@ -39,6 +39,7 @@ Run part_of(const Run& run, std::size_t first, std::size_t last) {
     if (vertex >= first && vertex < last) part.speed_words.push_back(vertex - first);
   }
   part.decimals = run.decimals;
+  part.stated_tolerance_mm = run.stated_tolerance_mm;
   part.closed = (part.points.front() - part.points.back()).norm() <= geometry::kSamePlace;
   return part;
 }

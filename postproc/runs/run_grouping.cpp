@@ -142,8 +142,12 @@ class RunGrouper {
   void take_motion(std::uint32_t i, const Motion& motion) {
     std::string_view why = states_.reason(read_.blocks[i].state_after);
     if (why.empty() && !motion.start_known) why = reason::kPositionUnknown;
+    const double tolerance = tolerance_after(i);
+    // Its comment would stand somewhere among the new moves.
+    if (why.empty() && tolerance_changes_in(i)) why = reason::kStatedTolerance;
+    if (!why.empty() || tolerance != tolerance_) close_chain();
+    tolerance_ = tolerance;
     if (why.empty()) return chain_.push_back(i);
-    close_chain();
     keep_up_to(i, why);
   }
 
@@ -155,6 +159,32 @@ class RunGrouper {
     keep_up_to(i, why);
   }
 
+  // mm: what a motion in this block may be moved by.
+  double tolerance_after(std::uint32_t block) const {
+    return tolerance_in(read_.blocks[block].state_after);
+  }
+  double tolerance_before(std::uint32_t block) const {
+    return tolerance_in(block > 0 ? read_.blocks[block - 1].state_after : 0);
+  }
+  double tolerance_in(std::uint32_t state) const {
+    const double users = options_.tolerance_mm;
+    return std::min(users, gcode::stated_tolerance_mm(read_.states[state]).value_or(users));
+  }
+
+  // In the block, or where it is one of a curve, in any of the curve's.
+  bool tolerance_changes_in(std::uint32_t block) {
+    if (!read_.blocks[block].of_curve) return tolerance_after(block) != tolerance_before(block);
+    if (curve_known_to_ <= block) {
+      const auto [first, last] = together_with(block, read_);
+      curve_known_to_ = last + 1;
+      tolerance_changes_in_curve_ = false;
+      for (std::uint32_t i = first; i <= last; ++i) {
+        tolerance_changes_in_curve_ |= tolerance_after(i) != tolerance_before(i);
+      }
+    }
+    return tolerance_changes_in_curve_;
+  }
+
   // Intended arcs are copied, and the chain is cut there and at corners beside arcs and curves.
   void close_chain() {
     const auto is_bend = [this](std::uint32_t block) { return blocks_.is_bend(block); };
@@ -164,8 +194,7 @@ class RunGrouper {
     for (const std::uint32_t block : whole) {
       if (blocks_.moves(block)) moving.push_back(blocks_.printed(block));
     }
-    const ChainJudgement judged =
-        judge_arcs(moving, blocks_.errors_of(whole), options_.tolerance_mm);
+    const ChainJudgement judged = judge_arcs(moving, blocks_.errors_of(whole), tolerance_);
     std::size_t next = 0;
     for (const std::uint32_t block : whole) {
       if (!blocks_.moves(block)) {
@@ -272,7 +301,9 @@ class RunGrouper {
     const std::uint32_t first = together_with(blocks.front(), read_).first;
     const std::uint32_t last = together_with(blocks.back(), read_).last;
     if (done_ < first) keep_up_to(first - 1, reason::kComment);
-    add({first, last, blocks_.run_of(blocks, kBendShare * options_.tolerance_mm)});
+    Run run = blocks_.run_of(blocks, kBendShare * tolerance_);
+    run.stated_tolerance_mm = gcode::least_stated_mm(read_, first, last);
+    add({first, last, std::move(run)});
   }
 
   void add(Section section) {
@@ -318,7 +349,10 @@ class RunGrouper {
   std::vector<Section> sections_;
   std::size_t anew_ = 0;              // sections before the last cut
   std::vector<std::uint32_t> chain_;  // motion blocks that may become a run
-  std::uint32_t done_ = 0;            // blocks before this one are in sections
+  double tolerance_ = 0;              // mm: of all of them
+  std::uint32_t curve_known_to_ = 0;  // the block behind the last curve whose tolerance was asked
+  bool tolerance_changes_in_curve_ = false;
+  std::uint32_t done_ = 0;  // blocks before this one are in sections
 };
 
 }  // namespace

@@ -29,6 +29,9 @@ struct GroupingOptions {
 // go with the Verbatim section before them, after a run with the next one. A run is not longer than
 // its motions. Which arcs are kept: postproc/runs/intended_arcs.h.
 //
+// A run ends where the program says another tolerance, of those that are less than
+// `options.tolerance_mm`; a block that says it beside its motion is kept.
+//
 // `cuts`: blocks that begin a section of their own, increasing: what is before them is grouped
 // as if the program ended there, and what follows as if it began.
 [[nodiscard]] std::vector<Section> group_runs(const gcode::Program& program,

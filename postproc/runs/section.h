@@ -1,6 +1,7 @@
 // A program cut into runs, which may be rewritten, and the rest, which is copied.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string_view>
@@ -59,7 +60,14 @@ struct Run {
   int decimals = 3;         // most digits after the point of its places: 4 of X.1234 in inches
   std::uint32_t state = 0;  // Interpretation::states before its first block
   bool closed = false;      // first and last point are one position
+  // mm: the least that the program says for one of its motions; nothing where it says none.
+  std::optional<double> stated_tolerance_mm = {};
 };
+
+// mm: how far the new path of a run may be from the old one, where the user allows so much.
+[[nodiscard]] inline double tolerance_of(const Run& run, double user_mm) {
+  return std::min(user_mm, run.stated_tolerance_mm.value_or(user_mm));
+}
 
 // Copied byte for byte.
 struct Verbatim {

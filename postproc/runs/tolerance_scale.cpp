@@ -28,8 +28,8 @@ void ToleranceScale::take_point(const geometry::Point3& point) {
 void ToleranceScale::add(const gcode::Program& part, const gcode::Interpretation& read,
                          const std::vector<Section>& sections) {
   for (const Section& section : sections) {
-    const bool is_run = std::holds_alternative<Run>(section.content);
-    if (is_run && !first_run_) first_run_ = part.blocks[section.first_block].span;
+    const Run* run = std::get_if<Run>(&section.content);
+    if (run != nullptr && !first_run_) first_run_ = part.blocks[section.first_block].span;
     for (std::uint32_t i = section.first_block; i <= section.last_block; ++i) {
       if (read.blocks[i].motion < 0) continue;
       const gcode::Motion& motion = read.motions[static_cast<std::size_t>(read.blocks[i].motion)];
@@ -42,12 +42,12 @@ void ToleranceScale::add(const gcode::Program& part, const gcode::Interpretation
       } else {
         for (const double t : kPlaces) take_point(geometry::point_at(motion.piece, t));
       }
-      if (!is_run) continue;
+      if (run == nullptr) continue;
       const double length = straight ? (motion.piece.end() - motion.piece.start()).norm()
                                      : geometry::length_of(motion.piece);
       if (!(length > 0)) continue;
       ++moves_;
-      if (length < tolerance_mm_) ++shorter_;
+      if (length < tolerance_of(*run, tolerance_mm_)) ++shorter_;
     }
   }
 }

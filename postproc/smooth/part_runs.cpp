@@ -205,7 +205,7 @@ class PartSmoother {
     std::vector<gcode::Diagnostics> notes(runs_.works.size());
     parallel_for(options_.threads, runs_.works.size(), [&](std::size_t i) {
       notes[i] = band_notes(part_.program, part_.meaning, runs_.sections[runs_.works[i].section],
-                            options_.tolerance_mm);
+                            tolerance_of(run_of(runs_.works[i]), options_.tolerance_mm));
     });
     runs_.notes = std::move(notes);
   }

@@ -1,6 +1,7 @@
 #include "postproc/smooth/repeated_runs.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <numeric>
@@ -73,6 +74,7 @@ bool is_same_state(gcode::ModalState a, const gcode::ModalState& b) {
   a.motion = b.motion;
   a.feed = b.feed;
   a.spindle_speed = b.spindle_speed;
+  a.stated = b.stated;  // compared as what the runs have to keep
   return a == b;
 }
 
@@ -80,9 +82,9 @@ bool may_repeat(RunInContext each) {
   return each.run->comments.empty() && !each.context->of_neighbours;
 }
 
-// The same for runs of one shape: that of the vertices, seen from the first, in steps far above
-// what numbers differ by and off the places where printed numbers lie.
-std::uint64_t hash_of(const Run& run) {
+// The same for runs of one shape and tolerance: that of the vertices, seen from the first, in steps
+// far above what numbers differ by and off the places where printed numbers lie.
+std::uint64_t hash_of(const Run& run, double tolerance_mm) {
   constexpr double kStep = 1e-3;
   constexpr double kBetween = 0.3717;
   std::uint64_t hash = run.points.size();
@@ -90,6 +92,7 @@ std::uint64_t hash_of(const Run& run) {
     hash = (hash ^ static_cast<std::uint64_t>(value)) * 0x9E3779B97F4A7C15U;
     hash ^= hash >> 32U;
   };
+  add(std::bit_cast<std::int64_t>(tolerance_mm));
   for (const Point3& point : run.points) {
     const Vector3 from = point - run.points.front();
     for (const double part : from) {
@@ -109,6 +112,7 @@ std::optional<Vector3> offset_of_repeat(RunInContext first, RunInContext run,
   const RunContext& now = *run.context;
   if (!may_repeat(first) || !may_repeat(run) || a.points.size() != b.points.size() ||
       a.bends.size() != b.bends.size() || a.decimals != b.decimals || a.closed != b.closed ||
+      tolerance_of(a, options.tolerance_mm) != tolerance_of(b, options.tolerance_mm) ||
       !is_same_state(before.before, now.before) || !is_same_state(before.after, now.after) ||
       before.numbers.first.has_value() != now.numbers.first.has_value()) {
     return std::nullopt;
@@ -143,7 +147,9 @@ std::vector<std::size_t> firsts_of_shapes(std::span<const RunInContext> runs,
   std::unordered_map<std::uint64_t, std::size_t> first_with;
   for (std::size_t i = 0; i < runs.size(); ++i) {
     if (!may_repeat(runs[i])) continue;
-    const std::size_t first = first_with.try_emplace(hash_of(*runs[i].run), i).first->second;
+    const Run& run = *runs[i].run;
+    const std::uint64_t hash = hash_of(run, tolerance_of(run, options.tolerance_mm));
+    const std::size_t first = first_with.try_emplace(hash, i).first->second;
     if (first != i && offset_of_repeat(runs[first], runs[i], options)) firsts[i] = first;
   }
   return firsts;

@@ -19,10 +19,10 @@ struct RunInContext {
   const RunContext* context = nullptr;
 };
 
-// mm: how far `run` lies from `first`, where it is the same run in another place: the same vertices,
-// arcs and feeds between the same states, without comments, a whole number of the target's printed
-// steps away, and of pieces of longer runs the same moves before and behind. Nothing where it is
-// not.
+// mm: how far `run` lies from `first`, where it is the same run in another place: the same
+// vertices, arcs and feeds between the same states, for the same tolerance, without comments, a
+// whole number of the target's printed steps away, and of pieces of longer runs the same moves
+// before and behind. Nothing where it is not.
 [[nodiscard]] std::optional<geometry::Vector3> offset_of_repeat(RunInContext first,
                                                                 RunInContext run,
                                                                 const SmoothOptions& options);

@@ -173,7 +173,7 @@ class RunSmoother {
   // corner where rounding them has won some.
   void try_others() {
     if (options().side != geometry::Side::kBoth) return;
-    const double corners = coarse_part(run(), options().tolerance_mm);
+    const double corners = coarse_part(run(), tolerance_of(run(), options().tolerance_mm));
     if (!corners_are_worth_trying(corners, bounds_.least_time(), best_time())) return;
     try_curve(Method::kGuo, curve_request(Method::kGuo));
     for (const Method method : {Method::kOzcan, Method::kTimeOptimal}) {
@@ -249,7 +249,7 @@ RunFacts facts_of(const Run& run, const RunContext& context, const SmoothOptions
   scale.original.bytes = static_cast<double>(context.bytes);
   scale.original.roughness = roughness_of(motions);
   scale.printed = printed_rms(options, context.before.units);
-  scale.near = kCost.near * options.tolerance_mm;
+  scale.near = kCost.near * tolerance_of(run, options.tolerance_mm);
   scale.period = control_period(*options.machine);
   if (options.method == Method::kNone) {  // nothing is compared: only its time is reported
     scale.original.times.programmed = times.programmed(motions);
@@ -272,7 +272,12 @@ SmoothedRun smooth_run(const Run& run, const RunContext& context, const SmoothOp
     result.reason = gcode::reason::kMethodNone;
     return result;
   }
-  ToleranceShares shares = share_tolerance(options, context.before.units, run.decimals);
+  ToleranceShares shares = share_tolerance(options, context.before.units, run.decimals,
+                                           tolerance_of(run, options.tolerance_mm));
+  if (!(shares.smoothing > 0) && run.stated_tolerance_mm) {
+    result.reason = gcode::reason::kStatedTolerance;
+    return result;
+  }
   shares.smoothing -= run.chord_error;  // the points are not quite where the bends are
   if (!(shares.smoothing > 0)) {
     result.reason = gcode::reason::kNoFit;
@@ -362,7 +367,7 @@ WholeFigures figures_with(const CutRun& cut, std::span<const RunState> pieces,
   before.times = cut.before;
   whole.after.times = times_of(chain_with(cut, pieces), *options.machine, cut.path);
   whole.scale.alone = cut.before.programmed;
-  whole.scale.near = kCost.near * options.tolerance_mm;
+  whole.scale.near = kCost.near * tolerance_of(cut.run, options.tolerance_mm);
   whole.scale.period = control_period(*options.machine);
   return whole;
 }

@@ -106,7 +106,7 @@ class ToleranceSurvey {
       };
       if (!smooth_runs(part, options, tell_share, own, &memos)) return false;
       auto& [before, after] = all.emplace_back();
-      for (const RunReport& run : report_runs(part, own, {}, false)) {
+      for (const RunReport& run : report_runs(part, own, options.tolerance_mm, {}, false)) {
         add_to(before, {run.time_before_s, 0, run.path_before});
         const auto blocks_in = static_cast<double>(run.blocks_in);
         add_to(after, {run.time_after_s, static_cast<double>(run.blocks_out) - blocks_in,

@@ -40,7 +40,7 @@ class TranslatedSmoothing {
             {options.source,
              reading_of(options,
                         language_to_translate(source, options).value_or(gcode::Language::kRs274)),
-             {.units = options.units}},
+             {.units = options.units, .stated_tolerances = !options.one_tolerance}},
             found_)) {}
 
   SmoothResult run() {
@@ -57,6 +57,14 @@ class TranslatedSmoothing {
   }
 
  private:
+  // mm
+  [[nodiscard]] double least_tolerance() const {
+    const auto blocks = static_cast<std::uint32_t>(read_.program.blocks.size());
+    const auto stated =
+        blocks > 0 ? gcode::least_stated_mm(read_.meaning, 0, blocks - 1) : std::optional<double>();
+    return std::min(options_.tolerance_mm, stated.value_or(options_.tolerance_mm));
+  }
+
   [[nodiscard]] gcode::SourceSpan first_span() const {
     return read_.program.blocks.empty() ? gcode::SourceSpan{} : read_.program.blocks.front().span;
   }
@@ -92,7 +100,11 @@ class TranslatedSmoothing {
     options.units = gcode::Units::kUnknown;
     options.source = kind_of(options_.target->language);
     options.decimals = gcode::Decimals{};
-    if (translation_.rounding_mm < options_.tolerance_mm) {
+    // The least that the program says for any of its parts counts for all: the translation does not
+    // say all of it.
+    options.tolerance_mm = least_tolerance();
+    options.one_tolerance = true;
+    if (translation_.rounding_mm < options.tolerance_mm) {
       options.tolerance_mm -= translation_.rounding_mm;
     } else {
       options.method = Method::kNone;
@@ -140,6 +152,7 @@ class TranslatedSmoothing {
     for (RunReport& run : result.runs) {
       run.first_line = source_line(run.first_line);
       run.last_line = source_line(run.last_line);
+      run.tolerance_mm = least_tolerance();
     }
   }
 
@@ -197,6 +210,7 @@ class TranslatedSmoothing {
   SmoothResult finished(SmoothResult result) {
     result.diagnostics = std::move(found_);
     result.blocks_in = read_.program.blocks.size();
+    add_stated(stated_in(read_.program, read_.meaning), result.stated);
     result.units = first_units(read_.meaning);
     return result;
   }

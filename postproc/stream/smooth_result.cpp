@@ -26,9 +26,13 @@ double together(double a, double length_a, double b, double length_b) {
 
 class Reporter {
  public:
-  Reporter(const ProgramPart& part, const PartRuns& runs, std::span<const Stretch> stretches,
-           bool proved)
-      : part_(part), of_part_(runs), stretches_(stretches), proved_(proved) {}
+  Reporter(const ProgramPart& part, const PartRuns& runs, double user_tolerance_mm,
+           std::span<const Stretch> stretches, bool proved)
+      : part_(part),
+        of_part_(runs),
+        user_tolerance_(user_tolerance_mm),
+        stretches_(stretches),
+        proved_(proved) {}
 
   std::vector<RunReport> run() {
     std::size_t next = 0;
@@ -166,6 +170,9 @@ class Reporter {
     RunReport r;
     r.first_line = part_.program.blocks[section.first_block].line;
     r.last_line = part_.program.blocks[section.last_block].line;
+    const auto stated =
+        gcode::least_stated_mm(part_.meaning, section.first_block, section.last_block);
+    r.tolerance_mm = std::min(user_tolerance_, stated.value_or(user_tolerance_));
     r.proved = true;  // copied bytes are proved by being the same
     return r;
   }
@@ -189,6 +196,7 @@ class Reporter {
 
   const ProgramPart& part_;
   const PartRuns& of_part_;
+  double user_tolerance_;  // mm
   std::span<const Stretch> stretches_;
   bool proved_;
   std::vector<RunReport> runs_;
@@ -226,8 +234,26 @@ TimeFigures time_of(const gcode::Program& program, const gcode::Interpretation& 
 }
 
 std::vector<RunReport> report_runs(const ProgramPart& part, const PartRuns& runs,
-                                   std::span<const Stretch> stretches, bool proved) {
-  return Reporter(part, runs, stretches, proved).run();
+                                   double user_tolerance_mm, std::span<const Stretch> stretches,
+                                   bool proved) {
+  return Reporter(part, runs, user_tolerance_mm, stretches, proved).run();
+}
+
+std::vector<StatedFrom> stated_in(const gcode::Program& part,
+                                  const gcode::Interpretation& meaning) {
+  const gcode::Units units = first_units(meaning);
+  std::vector<StatedFrom> stated;
+  for (const gcode::StatedAt& at : meaning.stated) {
+    stated.push_back({part.blocks[at.block].line, gcode::least_mm(at.stated, units)});
+  }
+  return stated;
+}
+
+void add_stated(const std::vector<StatedFrom>& part, std::vector<StatedFrom>& all) {
+  for (const StatedFrom& from : part) {
+    const auto before = all.empty() ? std::nullopt : all.back().tolerance_mm;
+    if (from.tolerance_mm != before) all.push_back(from);
+  }
 }
 
 gcode::Units first_units(const gcode::Interpretation& meaning) {

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -43,6 +44,7 @@ struct RunReport {
   std::uint32_t first_line = 0;
   std::uint32_t last_line = 0;
   std::size_t points = 0;
+  double tolerance_mm = 0;  // what it has to keep: the user's, or less where the program says so
   RunStatus status = RunStatus::kKept;
   std::string_view reason;          // why it was kept; empty when rewritten
   std::string_view method;          // that made what stands there now; empty where it was kept
@@ -69,7 +71,21 @@ struct RunReport {
 
 // What became of the runs, in the order of the program; `stretches` and `proved` of the proof.
 [[nodiscard]] std::vector<RunReport> report_runs(const ProgramPart& part, const PartRuns& runs,
+                                                 double user_tolerance_mm,
                                                  std::span<const Stretch> stretches, bool proved);
+
+// What the program says of how exact it has to be, from a line on until the next of these.
+struct StatedFrom {
+  std::uint32_t line = 0;
+  std::optional<double> tolerance_mm;  // nothing: it asks for none any more
+};
+
+// In one part of the program.
+[[nodiscard]] std::vector<StatedFrom> stated_in(const gcode::Program& part,
+                                                const gcode::Interpretation& meaning);
+
+// Behind what the parts before it have said, but for what says the same again.
+void add_stated(const std::vector<StatedFrom>& part, std::vector<StatedFrom>& all);
 
 // Of a whole program, as `batten time` predicts it for the machine: rapids and waits count.
 struct TimeFigures {
@@ -90,6 +106,7 @@ struct TimeFigures {
 struct SmoothResult {
   std::string text;  // the new program, where it was not handed on as it came; or empty
   std::vector<RunReport> runs;
+  std::vector<StatedFrom> stated;
   KeptCauses kept;
   gcode::Diagnostics diagnostics;
   bool understood = false;  // false: nothing may be rewritten (no units ..): exit code 2

@@ -56,6 +56,7 @@ class CollectedResult {
       result.deviation_mm = proof.verification.deviation_mm;
       result.deviation_line = proof.verification.deviation_line;
     }
+    add_stated(window.stated, result.stated);
     causes_.add(window.causes);
     if (window.scale && scale_) scale_->add(*window.scale);
     if (window.scale && !scale_) scale_ = window.scale;

@@ -110,7 +110,9 @@ class WindowWork {
       return;
     }
     const std::vector<Stretch> stretches = std::exchange(done.proof.verification.stretches, {});
-    done.runs = report_runs(part, runs, stretches, done.proof.proved);
+    done.runs =
+        report_runs(part, runs, setting_.options.tolerance_mm, stretches, done.proof.proved);
+    done.stated = stated_in(part.program, part.meaning);
     done.causes.add(part.program, part.meaning, runs.sections, grouping_of(setting_.options),
                     reject_reasons(runs));
     for (const RunState& work : runs.works) {
@@ -377,8 +379,8 @@ class Prover {
     return !others.empty();
   }
 
-  // Of a long run that leaves the tolerance somewhere another candidate would do so elsewhere: it is
-  // cut at once.
+  // Of a long run that leaves the tolerance somewhere another candidate would do so elsewhere: it
+  // is cut at once.
   void reject(RunState& work, std::string_view why) {
     const Run& run = std::get<Run>(runs_.sections[work.section].content);
     const bool is_long = !work.cut_run && run.points.size() > 2 * CuttingOptions{}.longest;

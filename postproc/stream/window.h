@@ -91,6 +91,7 @@ struct WindowDone {
   NewTextBefore after;
   TextBefore old_after;
   std::vector<RunReport> runs;
+  std::vector<StatedFrom> stated;       // in this window
   CauseTally causes;                    // of what is kept
   std::optional<ToleranceScale> scale;  // where its runs were smoothed
   Outlook outlook;

@@ -45,20 +45,23 @@ class ProgramMutator {
   using Lines = std::vector<std::string>;  // with their line ends
 
   // What changes the meaning of blocks, or is none.
-  static constexpr std::array<std::string_view, 96> kWords = {
+  static constexpr std::array<std::string_view, 101> kWords = {
       "G0", "G1", "G2 I1 J0", "G3 I0 J1", "G2 R5", "G3 R-5", "G4 P1", "G17", "G18", "G19", "G20",
       "G21", "G28", "G40", "G41 D1", "G43 H1", "G49", "G52 X1", "G54", "G61", "G64", "G64 P0.01",
       "G68 R30", "G69", "G80", "G81 R1", "G90", "G91", "G90.1", "G91.1", "G92 X0", "G93", "G94",
       "G95", "G5.1 Q1", "G6.2 P4", "M0", "M1", "M2", "M3 S1000", "M5", "M6 T1", "M8", "M30",
       "M98 P1", "M99", "F0", "F-1", "F1000", "N10", "/", "(x)", "(MSG,x)", "; x", "%", "#1=2",
-      "X[1+2]", "X#1", "O100 sub", "Xnan", "X1e3", "A90", "Z", "GOTO 10",
+      "X[1+2]", "X#1", "O100 sub", "Xnan", "X1e3", "A90", "Z", "GOTO 10", "(TOLERANCE 0.005)",
+      "(TOL: 0.002 MM)", "; TOLERANCE = 0.02",
       // Sinumerik
       "X=5", "X=AC(5)", "Y=IC(-1)", "CR=10", "R1=5", "X=R1*2", "MSG(\"x\")", "CYCLE832(0.01,1,1)",
-      "COMPCAD", "COMPOF", "TRAORI", "DEF REAL A", "GOTOF L1", "L1:", "T=\"D5\"", "%_N_P_MPF",
+      "CYCLE832()", "COMPCAD", "COMPOF", "TRAORI", "DEF REAL A", "GOTOF L1", "L1:", "T=\"D5\"",
+      "%_N_P_MPF",
       // Klartext
       "0 BEGIN PGM P MM", "9 END PGM P MM", "L X+1 Y-2 F500", "L IX+1 FMAX", "L Z+5 R0 F AUTO",
       "CC X+0 Y+0", "C X+5 Y+0 DR-", "CR X+1 Y+1 R+5 DR+", "CT X+1 Y+2", "TOOL CALL 3 Z S1000",
-      "CYCL DEF 32.0 TOLERANCE", "LBL 1", "CALL LBL 1 REP 2", "FN 0: Q1 = +2", "L X+Q1", "R0 M3"};
+      "CYCL DEF 32.0 TOLERANCE", "CYCL DEF 32.1 T0.005", "LBL 1", "CALL LBL 1 REP 2",
+      "FN 0: Q1 = +2", "L X+Q1", "R0 M3"};
 
   static constexpr std::array<std::string_view, 14> kNumbers = {
       "0",       "-0",      "0.0001", "-0.0001",      "0.00001",   "1",          "999.999",

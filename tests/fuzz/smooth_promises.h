@@ -119,6 +119,7 @@ inline std::string broken_by(std::string_view text, const SmoothOptions& options
   if (!found.proved()) return "not proved: " + found.violations.front().message;
   if (!rest_is_copied(before.program, result)) return "something that was kept is not the same";
   for (const RunReport& run : result.runs) {
+    if (!(run.deviation_mm <= run.tolerance_mm)) return "a deviation above that of its part";
     if (run.reason.empty() != (run.status == RunStatus::kRewritten)) return "kept without a reason";
   }
   // A control without comments has no place for the mark that a program was smoothed.

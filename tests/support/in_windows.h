@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <limits>
@@ -74,10 +75,11 @@ inline std::vector<std::string> words_of(const gcode::Diagnostics& diagnostics) 
 // Every field, the numbers to their last bit.
 inline std::string words_of(const RunReport& run) {
   std::string text = fmt::format(
-      "{}-{} {} {} {} {} {} {}->{} {:a} {} {:a} {:a} {:a} {:a} {:a}", run.first_line, run.last_line,
-      run.points, static_cast<int>(run.status), run.reason, run.method, static_cast<int>(run.form),
-      run.blocks_in, run.blocks_out, run.deviation_mm, run.proved, run.noise_mm,
-      run.max_curvature_before, run.max_curvature_after, run.time_before_s, run.time_after_s);
+      "{}-{} {} {:a} {} {} {} {} {}->{} {:a} {} {:a} {:a} {:a} {:a} {:a}", run.first_line,
+      run.last_line, run.points, run.tolerance_mm, static_cast<int>(run.status), run.reason,
+      run.method, static_cast<int>(run.form), run.blocks_in, run.blocks_out, run.deviation_mm,
+      run.proved, run.noise_mm, run.max_curvature_before, run.max_curvature_after,
+      run.time_before_s, run.time_after_s);
   for (const MethodTime& each : run.methods) {
     text += fmt::format(" {} {:a}", each.method, each.time_s);
   }
@@ -92,6 +94,14 @@ inline void expect_same(const InWindows& windows, const SmoothResult& whole) {
   for (std::size_t i = 0; i < whole.runs.size(); ++i) {
     EXPECT_EQ(words_of(parts.runs[i]), words_of(whole.runs[i])) << "run " << i;
   }
+  const auto stated = [](const SmoothResult& r) {
+    std::vector<std::pair<std::uint32_t, double>> lines;
+    for (const StatedFrom& from : r.stated) {
+      lines.emplace_back(from.line, from.tolerance_mm.value_or(-1));
+    }
+    return lines;
+  };
+  EXPECT_EQ(stated(parts), stated(whole));
   const auto figures = [](const SmoothResult& r) {
     return std::tuple(r.understood, r.units, r.blocks_in, r.blocks_out, r.bytes_out, r.added_lines,
                       r.deviation_mm, r.deviation_line, r.corner_mm, r.runs_before_s,

@@ -75,6 +75,7 @@ struct Options {
   std::string target;          // required, see target_names
   std::string machine;         // see machine_names, or a file ending in .toml; empty: the target's
   double tolerance_mm = 0.01;  // the full distance allowed, both ways and in order
+  bool one_tolerance = false;  // also where the program says less for a part of it
   bool band_reading = false;   // --tolerance-kind band
   std::string method = "best";
   std::string output = "auto";
@@ -83,7 +84,7 @@ struct Options {
   std::optional<double> keep_corners_deg;
   std::vector<std::string> allow;
   std::vector<std::string> words;  // what words of your own do, as --word: "M501 = keeps state"
-  bool keep_expressions = false;  // blocks whose numbers are expressions of variables stay
+  bool keep_expressions = false;   // blocks whose numbers are expressions of variables stay
   ProgramUnits units = ProgramUnits::kAsWritten;
   std::string source = "auto";
   // What X5 means on controls like FANUC: auto, explicit, implied, implied:0.0001 .. as --decimals.
@@ -141,11 +142,12 @@ struct Proof {
 
 // Does the new program do what the old one did, with paths no further apart than the tolerance,
 // both ways and in order? `target` (see target_names): the control whose curve words (G06.2, POLY,
-// G5) are read in both; empty: none are.
+// G5) are read in both; empty: none are. Parts for which the old program says less must keep that,
+// unless `one_tolerance` says that the tolerance counts for all.
 [[nodiscard]] Proof verify(std::string_view old_program, std::string_view new_program,
                            double tolerance_mm, ProgramUnits units = ProgramUnits::kAsWritten,
                            std::string_view target = {}, std::string_view source = "auto",
-                           std::string_view decimals = "auto");
+                           std::string_view decimals = "auto", bool one_tolerance = false);
 
 // --- time --------------------------------------------------------------------------------------
 

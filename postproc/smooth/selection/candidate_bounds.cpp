@@ -21,8 +21,8 @@ CandidateBounds::CandidateBounds(const RunTask& task, const SmoothedRun& so_far)
 }
 
 double CandidateBounds::least_time_of(LimitsOf of) const {
-  return postproc::least_time(task_.run, task_.options.tolerance_mm, *task_.options.machine,
-                              task_.options.tolerance_kind, of);
+  return postproc::least_time(task_.run, tolerance_of(task_.run, task_.options.tolerance_mm),
+                              *task_.options.machine, task_.options.tolerance_kind, of);
 }
 
 Figures CandidateBounds::least(double blocks, double distance) const {
@@ -42,7 +42,7 @@ Figures CandidateBounds::least(double blocks, double distance) const {
 bool CandidateBounds::is_hopeless() const {
   const auto& [run, context, options, scope, memo] = task_;
   if (options.prefer == Prefer::kSize) return false;
-  if (coarse_part(run, options.tolerance_mm) < kBounds.coarse) return false;
+  if (coarse_part(run, tolerance_of(run, options.tolerance_mm)) < kBounds.coarse) return false;
   const CostScale& scale = so_far_.facts.scale;
   const Figures corners = least(2 * scale.original.blocks / kBounds.fewer,
                                 std::max(scale.original.distance, scale.near));

@@ -196,15 +196,16 @@ TEST_F(SmoothReports, HaveTheirFieldsInAFixedOrder) {
   const Json report = json();
   EXPECT_EQ(
       keys_of(report),
-      "schema kind batten options options_from input output machine runs reasons kept deviation_mm "
-      "deviation_line corner_mm "
+      "schema kind batten options options_from input output machine stated_tolerances runs reasons "
+      "kept deviation_mm deviation_line corner_mm "
       "time_before_s time_after_s cutting_before_s cutting_after_s slow_share_before "
       "slow_share_after path_before path_after proved understood diagnostics ");
   EXPECT_EQ(keys_of(report["input"]), "file bytes blocks units ");
   EXPECT_EQ(keys_of(report["output"]), "file bytes blocks target ");
   EXPECT_EQ(
       keys_of(report["runs"][0]),
-      "first_line last_line points status reason method methods form blocks_in computed_blocks "
+      "first_line last_line points tolerance_mm status reason method methods form blocks_in "
+      "computed_blocks "
       "blocks_out "
       "deviation_mm proved noise_mm max_curvature_before max_curvature_after bytes_in bytes_out "
       "path_before path_after time_before_s time_after_s ");

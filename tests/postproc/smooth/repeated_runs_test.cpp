@@ -70,6 +70,15 @@ TEST(RepeatedRuns, AreFoundInOtherDepthsAndPlaces) {
   EXPECT_EQ(firsts_in({{}, {.z = -2}, {.x = 50}, {.x = 50.25, .z = -3.5}}), (Firsts{0, 0, 0, 0}));
 }
 
+// What the program says beyond the tolerance of the user, 0.01 mm, is none.
+TEST(RepeatedRuns, AreFoundWhereTheSameToleranceHolds) {
+  EXPECT_EQ(firsts_in({{},
+                       {.before = "(TOLERANCE 0.005)\n"},
+                       {.before = "(TOLERANCE 0.05)\n"},
+                       {.before = "(TOL 0.005)\n"}}),
+            (Firsts{0, 1, 0, 1}));
+}
+
 // Each differs in what a form of the first would be wrong or worse for.
 TEST(RepeatedRuns, AreOnesThatDifferInNothingElse) {
   EXPECT_EQ(firsts_in({{}, {.feed = "1500"}, {.feed = "1500"}}), (Firsts{0, 1, 2}))
