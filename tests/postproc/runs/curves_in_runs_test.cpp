@@ -92,6 +92,31 @@ TEST_P(CurvesInRuns, AreOneRunOfAllTheirBlocks) {
   EXPECT_LT((run.points.back() - pieces.back().control[3]).norm(), 1e-9);
 }
 
+// A part's tolerance that the program states in the midst of a chain, also within a curve of many
+// blocks: both parts keep theirs, and no curve is torn apart.
+TEST_P(CurvesInRuns, KeepTheTolerancesOfTheirParts) {
+  const std::vector<std::string> lines = lines_of(program());
+  const bool brackets = target_.language == gcode::Language::kRs274;
+  const std::string stated = brackets ? "(TOLERANCE 0.004)" : "; TOLERANCE 0.004";
+  for (std::size_t at = lines.size() / 2; at < lines.size() / 2 + 6; ++at) {
+    SCOPED_TRACE(testing::Message() << "before line " << at);
+    std::string text;
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      if (i == at) text += stated + "\n";
+      text += lines[i] + "\n";
+    }
+    const SmoothResult result = smoothed(text, options());
+    ASSERT_TRUE(result.understood);
+    EXPECT_TRUE(result.proved);
+    expect_rest_copied(text, result);
+    EXPECT_TRUE(verdict_by(target_, text, result.text, 0.01).proved());
+    for (const RunReport& run : result.runs) {
+      if (run.first_line <= at) continue;
+      EXPECT_LE(run.deviation_mm, 0.004) << run.first_line;
+    }
+  }
+}
+
 // Where the control says curves itself, and where they become arcs or lines.
 TEST_P(CurvesInRuns, AreSmoothedInEachFormWithinTheTolerance) {
   const std::string text = program();
