@@ -37,8 +37,9 @@ class ClosingFan {
     const double beyond = square - inside_ * inside_;
     if (beyond <= 0) return true;  // the start itself is near enough
     if (x <= 0 || std::abs(y) > steepest_ * x) return false;
-    const double low = std::max(range_.low, -greatest(-y, square));
-    const double high = std::min(range_.high, greatest(y, square));
+    const double per_outside = 2 / (square - outside_ * outside_);
+    const double low = std::max(range_.low, -greatest(-y, square, per_outside));
+    const double high = std::min(range_.high, greatest(y, square, per_outside));
     if (low > high) return false;
     range_ = {low, high};
     squared_ = beyond;
@@ -50,8 +51,8 @@ class ClosingFan {
 
  private:
   // Curvature of an arc that passes a place so far to its left.
-  [[nodiscard]] double greatest(double y, double square) const {
-    if (y + outside_ >= 0) return 2 / (square - outside_ * outside_) * (y + outside_);
+  [[nodiscard]] double greatest(double y, double square, double per_outside) const {
+    if (y + outside_ >= 0) return per_outside * (y + outside_);
     if (y + inside_ >= 0) return 0;
     return 2 / (square - inside_ * inside_) * (y + inside_);
   }
