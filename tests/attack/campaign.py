@@ -135,8 +135,8 @@ class Tries:
     def count(self, target, *what):
         self.counts[f"{target} {what[0]}"] += 1
 
-    def harm(self, old, canon, new, tolerance):
-        harm = old.harm(new, tolerance)
+    def harm(self, old, canon, new, tolerance, of_parts=True):
+        harm = old.harm(new, tolerance, of_parts)
         if not harm and canon:
             harm = oracle.harm_in_linuxcnc(canon, new, tolerance)
         return harm
@@ -170,13 +170,15 @@ class Tries:
             self.count(target, "certificates damaged")
         if code != PROVED and not accepted:
             return
-        harm = self.harm(old, canon, broken, tolerance)
+        # A certificate has one tolerance for all.
+        harm = self.harm(old, canon, broken, tolerance, of_parts=code == PROVED)
         if code == PROVED:
             self.count(target, "damaged, proved")
             if harm:
                 self.found(name, f"{kind}: proved: {harm}", verify, {"old": text, "new": broken, "undamaged": new})
         if accepted:
             self.count(target, "damaged, certified")
+            harm = harm and self.harm(old, canon, broken, tolerance, of_parts=False)
             if harm:
                 self.found(name, f"{kind}: certified: {harm}", ["check_certificate", target, tolerance],
                            {"old": text, "new": broken, "undamaged": new, "cert": proof})

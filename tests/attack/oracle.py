@@ -27,41 +27,50 @@ BEFORE_OFFSETS = ("STOP_SPINDLE", "START_SPINDLE", "SET_SPINDLE", "FLOOD_", "MIS
 LIKE_LINUXCNC = ("linuxcnc", "grbl", "grblhal", "mach3")
 
 
-def sections(trace, least):
-    """Neighbouring cuts of one feed as one path: (kind, feed or text, points). Those that go no
-    further than `least` are left out."""
-    joined = []
+def sections(trace, least, apart):
+    """Neighbouring cuts of one feed as one path: [kind, feed or text, points, tolerance of its part].
+    `apart`: and of one tolerance; else it is the least of them. Paths that go no further than `least`
+    are left out."""
+    joined, part = [], math.inf
     for kind, what, value in trace:
-        if kind == "event":
+        if kind == "part":
+            part = value
+        elif kind == "event":
             # A speed beside the word that starts the spindle, in one block or two.
             if joined and value.startswith(SPEEDS) and str(joined[-1][1]).startswith(STARTS):
-                joined.insert(-1, (kind, value, None))
+                joined.insert(-1, [kind, value, None, part])
             elif value.startswith(OFFSETS):
                 at = len(joined)
                 while at > 0 and joined[at - 1][0] == "event" and joined[at - 1][1].startswith(BEFORE_OFFSETS):
                     at -= 1
-                joined.insert(at, (kind, value, None))
+                joined.insert(at, [kind, value, None, part])
             else:
-                joined.append((kind, value, None))
-        elif kind == "cut" and joined and joined[-1][:2] == (kind, what):
+                joined.append([kind, value, None, part])
+        elif kind == "cut" and joined and goes_on(joined[-1], [kind, what, None, part], apart):
             joined[-1][2].extend(value[1:])
+            joined[-1][3] = min(joined[-1][3], part)
         else:
-            joined.append((kind, what, list(value)))
+            joined.append([kind, what, list(value), part])
     kept = []
     for section in joined:
         if section[0] != "event" and paths.extent(section[2]) <= least:
             continue
-        if section[0] == "cut" and kept and kept[-1][:2] == section[:2]:
+        if section[0] == "cut" and kept and goes_on(kept[-1], section, apart):
             kept[-1][2].extend(section[2])
+            kept[-1][3] = min(kept[-1][3], section[3])
         else:
             kept.append(section)
     return kept
 
 
+def goes_on(before, section, apart):
+    return before[:2] == section[:2] and (not apart or before[3] == section[3])
+
+
 def said(section):
     if section is None:
         return "nothing"
-    kind, what, points = section
+    kind, what, points, _ = section
     if kind == "event":
         return f"'{what}'"
     feed = f" at {what}" if kind == "cut" else ""
@@ -69,24 +78,37 @@ def said(section):
     return f"{kind}{feed} from {begin} to {end}"
 
 
-def alike(a, b, reach):
+def alike(a, b, reach, apart):
     if a is None or b is None or a[:2] != b[:2]:
         return False
     if a[0] == "rapid":
         return math.dist(a[2][-1], b[2][-1]) <= reach and math.dist(a[2][0], b[2][0]) <= reach
-    return a[0] == "event" or paths.together(a[2], b[2], reach)
+    if a[0] == "event":
+        return True
+    return (not apart or a[3] == b[3]) and paths.together(a[2], b[2], min(reach, a[3] + SLACK))
 
 
 def difference(old, new, reach):
-    """Of two traces; empty: none. A move that does not leave `reach` may be in one alone."""
+    """Of two traces; empty: none. A move that does not leave `reach` may be in one alone. Each part
+    keeps what the old one states, or all of a path the least of it, where its parts are not told apart."""
     first = ""
-    for least in (1e-6, reach / 3, reach):
-        pairs = itertools.zip_longest(sections(old, least), sections(new, least))
-        unlike = next(((a, b) for a, b in pairs if not alike(a, b, reach)), None)
-        if unlike is None:
-            return ""
-        first = first or f"{said(unlike[0])} became {said(unlike[1])}"
+    for apart in (True, False) if any(kind == "part" for kind, _, _ in old) else (True,):
+        for least in (1e-6, reach / 3, reach):
+            pairs = itertools.zip_longest(sections(old, least, apart), sections(new, least, apart))
+            unlike = next(((a, b) for a, b in pairs if not alike(a, b, reach, apart)), None)
+            if unlike is None:
+                return ""
+            first = first or f"{said(unlike[0])} became {said(unlike[1])}"
     return first
+
+
+def least_parts(trace, tolerance):
+    """A part that may move by more than is asked for anyway is one like those that state nothing."""
+    return [(kind, what, math.inf if kind == "part" and value >= tolerance else value) for kind, what, value in trace]
+
+
+def without_parts(trace):
+    return [each for each in trace if each[0] != "part"]
 
 
 # --- the readers -------------------------------------------------------------------------------
@@ -103,11 +125,13 @@ class OldProgram:
                 reader = self.reader(text, effect, inch)
                 self.traces[effect] = reader.run()
 
-    def harm(self, new, tolerance):
-        """What `new` does otherwise, by the readers; empty: nothing."""
+    def harm(self, new, tolerance, of_parts=True):
+        """What `new` does otherwise, by the readers; empty: nothing. `of_parts`: also where a part breaks
+        the tolerance that the old program states for it."""
         for effect, trace in self.traces.items():
             reader = self.reader(new, effect, self.inch)
-            found = difference(trace, reader.run(), tolerance + SLACK)
+            both = least_parts(trace, tolerance), least_parts(reader.run(), tolerance)
+            found = difference(*(both if of_parts else map(without_parts, both)), tolerance + SLACK)
             if not found and not reader.used_effects <= self.traces.keys():
                 found = "a line was added that may do something"
             if found:

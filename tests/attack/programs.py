@@ -99,6 +99,7 @@ class Programs:
         self.numbered = chance.random() < 0.25 and self.like not in ("marlin",)
         self.noise = chance.choice([0.0, 0.0, 0.001, 0.004])
         self.comments = chance.random() < 0.15
+        self.states = chance.choice([0.0, 0.0, 0.0, 0.02, 0.1])
         style = chance.choice(STYLES)
         often = chance.choice([0.0, 0.0, 0.01, 0.04, 0.12])
         self.curves = chance.choice([0.0, 0.0, 0.05, 0.3, 0.9]) if self.target in CURVES else 0.0
@@ -166,6 +167,11 @@ class Programs:
             words.append(f"F{feed / 25.4:.1f}" if self.inch else f"F{feed}{self.point}")
         return self.blank.join(words)
 
+    def stated_tolerance(self, chance):
+        """A comment by itself, in the units of the program."""
+        words = f"TOLERANCE {chance.choice([0.003, 0.006, 0.02]) / (25.4 if self.inch else 1):.6f}"
+        return f"; {words}" if self.klartext or self.like in ("marlin", "siemens") else f"({words})"
+
     def chain_lines(self, chain, style, often):
         chance, lines = self.random, []
         first, *rest = chain
@@ -200,6 +206,8 @@ class Programs:
                 lines.append("#5=0." if self.like == "fanuc" else "#5=[1-1]")
                 text += " (x)"
             lines.append(text)
+            if chance.random() < self.states:
+                lines.append(self.stated_tolerance(chance))
             if chance.random() < often:
                 lines += chance.choice(self.between)
                 self.last = dict.fromkeys("XYZ")

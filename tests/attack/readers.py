@@ -2,7 +2,7 @@
 FANUC and Marlin), Siemens words, Klartext.
 
 A reader follows a program line by line and gives its trace: ("cut", feed, points), ("rapid", None,
-points) and ("event", None, text), in mm. What a control may do that no reader can know is played:
+points), ("event", None, text) and ("part", None, the tolerance that a comment states), in mm. What a control may do that no reader can know is played:
 a word that nobody knows, a call, a label that is jumped to does what `effect` says (EFFECTS). A new
 program has to do the same as the old one whatever that is. Where the words are not the path (cutter
 compensation, rotation, inverse time ..), a move is an event with its words."""
@@ -25,6 +25,8 @@ PLANES = {17: (0, 1, 2), 18: (2, 0, 1), 19: (1, 2, 0)}
 NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)"
 WORD = re.compile(rf"([A-Z])({NUMBER})")
 # No words of a number alone: their lines are kept as they are.
+# A comment by itself that says how exact the part behind it has to be.
+STATED = re.compile(r"\s*(?:N?\d+\s*)?[(;]\s*TOLERANCE ([\d.]+)( MM)?\s*\)?\s*$")
 FLOW = re.compile(r"\b(IF|WHILE|GOTO|END|DO|THEN)\b|^\s*N?\d*\s*O\d+\s*[A-Z]|^\s*O<", re.I)
 
 
@@ -60,6 +62,9 @@ class Reader:
             if self.ended:
                 break
             self.follow(line.rstrip("\r"))
+            if stated := STATED.match(line):
+                number = float(stated.group(1))
+                self.trace.append(("part", None, number if stated.group(2) else self.length(number)))
         self.event("end " + self.state())
         return self.trace
 
