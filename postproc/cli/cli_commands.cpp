@@ -682,6 +682,15 @@ TimeCommand time_command(Arguments& in) {
         "--machine: no machine given; `batten machines` lists them, a file NAME.toml is your own");
   }
   command.start = start_given(in);
+  static constexpr std::array kPlanners = {
+      Choice<FeedPlanner>{FeedPlanner::kControl, "control", ""},
+      Choice<FeedPlanner>{FeedPlanner::kJerk, "jerk", ""},
+      Choice<FeedPlanner>{FeedPlanner::kSCurve, "s-curve", ""}};
+  choose(command.planner, "planner", std::span<const Choice<FeedPlanner>>(kPlanners), in);
+  if (command.planner != FeedPlanner::kControl && !command.profile_file.empty()) {
+    in.complain("--profile: it is of the control's model, not of --planner {}",
+                name_of(command.planner));
+  }
   command.bound = in.given.has("bound");
   std::optional<double> inch;
   command.tolerance_mm = tolerance_in(in.given.value("tolerance"), in, inch);

@@ -207,28 +207,33 @@ std::vector<OptionRow> verify_rows() {
 }
 
 std::vector<OptionRow> time_rows() {
-  return {kMachine,
-          kGrblSettings,
-          option("target", kValue, "NAME|FILE.toml",
-                 "the control the program is written for (batten targets): what G4 P means; or a "
-                 "profile of it"),
-          kWord,
-          kUnits,
-          kSource,
-          kDecimals,
-          option("from", kValue, "X,Y,Z", "the tool's position before the program, mm"),
-          option("bound", kFlag, "", "tell how much time is left to win in the runs, and where"),
-          option("tolerance", kValue, "LENGTH",
-                 "for --bound: by paths that are so near, 0.01, 0.01mm or 0.0005in; default: on "
-                 "the path as it is"),
-          kJson,
-          kReport,
-          kOpen,
-          option("profile", kValue, "FILE.csv",
-                 "write position, feed, acceleration and jerk each millisecond"),
-          kForce,
-          kQuiet,
-          kLogLevel};
+  return {
+      kMachine,
+      kGrblSettings,
+      option("target", kValue, "NAME|FILE.toml",
+             "the control the program is written for (batten targets): what G4 P means; or a "
+             "profile of it"),
+      kWord,
+      kUnits,
+      kSource,
+      kDecimals,
+      option("from", kValue, "X,Y,Z", "the tool's position before the program, mm"),
+      option("planner", kValue, "control|jerk|s-curve",
+             "what moves the axes: the machine's control; the least time within the limits of each "
+             "axis, jerk among them; or S-curves from bend to bend [Naseath 2007]",
+             "control"),
+      option("bound", kFlag, "", "tell how much time is left to win in the runs, and where"),
+      option("tolerance", kValue, "LENGTH",
+             "for --bound: by paths that are so near, 0.01, 0.01mm or 0.0005in; default: on "
+             "the path as it is"),
+      kJson,
+      kReport,
+      kOpen,
+      option("profile", kValue, "FILE.csv",
+             "write position, feed, acceleration and jerk each millisecond"),
+      kForce,
+      kQuiet,
+      kLogLevel};
 }
 
 std::vector<OptionRow> machines_rows() {
@@ -350,6 +355,7 @@ std::vector<CommandRow> make_command_rows() {
        "  batten time part.nc --machine mill --json part.json --from 0,0,50\n"
        "  batten time part.nc --machine router.toml --profile part.csv\n"
        "  batten time part.nc --machine router --bound --tolerance 0.01\n"
+       "  batten time part.nc --machine high-speed --planner jerk\n"
        "The profile has a row for each millisecond: t_s, line, x_mm, y_mm, z_mm,\n"
        "feed_mm_per_min, then acceleration (mm/s2) and jerk (mm/s3) of X, Y and Z.\n"
        "Times are those of the control's model; what the text does not tell is listed."},

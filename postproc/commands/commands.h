@@ -138,8 +138,9 @@ struct TimeCommand : ReadingCommand {
   std::string input;
   std::shared_ptr<const Machine> machine;  // required
   std::optional<geometry::Point3> start;   // mm: where the tool is before the program
-  bool bound = false;                      // tells what is left to win
-  std::optional<double> tolerance_mm;      // within which a path may be for that
+  FeedPlanner planner = FeedPlanner::kControl;
+  bool bound = false;                  // tells what is left to win
+  std::optional<double> tolerance_mm;  // within which a path may be for that
   std::string profile_file;
   std::shared_ptr<const TargetProfile> profile;  // keeps a target of a file alive
 };

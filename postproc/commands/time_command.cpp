@@ -96,11 +96,12 @@ int run(const TimeCommand& command) {
 
   const StepOptions options = {.dwell_unit = dwell_unit_of(command.target, *command.machine),
                                .start = command.start};
-  const ProgramTime time = time_program(program, meaning, *command.machine, options);
+  const ProgramTime time =
+      time_program(program, meaning, *command.machine, options, command.planner);
   std::optional<TimeBounds> bounds;
   if (command.bound) bounds = time_bounds(program, meaning, *command.machine, command.tolerance_mm);
-  const TimeReport report{program,           *command.machine, time,  found,
-                          command.own_words, called.files,     bounds};
+  const TimeReport report{program,           *command.machine, time,   found,
+                          command.own_words, called.files,     bounds, command.planner};
   const bool standard_output_taken =
       command.json_file == "-" || command.profile_file == "-" || command.page.file == "-";
   if (!standard_output_taken) {

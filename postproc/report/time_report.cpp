@@ -179,7 +179,8 @@ Json time_json(const TimeReport& report) {
                 {{"file", report.program.source.name()},
                  {"bytes", report.program.source.text().size()},
                  {"blocks", report.program.blocks.size()}}},
-               {"machine", report.machine.name}};
+               {"machine", report.machine.name},
+               {"planner", name_of(report.planner)}};
   json.update(parts_json(time.seconds));
   json["cuts"] = time.counts.cuts;
   json["rapids"] = time.counts.rapids;
@@ -202,8 +203,11 @@ Json time_json(const TimeReport& report) {
 }
 
 std::string time_text(const TimeReport& report) {
-  std::string lines = fmt::format("{} on {}: {}\n", report.program.source.name(),
-                                  report.machine.name, seconds_text(report.time.seconds.sum()));
+  const bool planned = report.planner != FeedPlanner::kControl;
+  std::string lines =
+      fmt::format("{} on {}{}: {}\n", report.program.source.name(), report.machine.name,
+                  planned ? fmt::format(", planner {}", name_of(report.planner)) : "",
+                  seconds_text(report.time.seconds.sum()));
   add_parts(report.time, lines);
   add_tools(report.time, lines);
   add_slow_places(report.time, lines);

@@ -25,6 +25,7 @@ struct TimeReport {
   const std::shared_ptr<const gcode::OwnWords>& own_words;  // that the user vouches for
   const std::vector<CalledFile>& called;    // programs that it calls, whose time is not in it
   const std::optional<TimeBounds>& bounds;  // where they are asked for
+  FeedPlanner planner = FeedPlanner::kControl;
 };
 
 // For people:

@@ -57,6 +57,24 @@ TEST_F(TimeCommandLine, WritesJsonWhosePartsSumToTheWhole) {
   EXPECT_TRUE(json.at("not_timed").is_array());
 }
 
+TEST_F(TimeCommandLine, PlansByTheLimitsOfTheAxes) {
+  const auto seconds = [&](const std::string& planner) {
+    const ProcessResult result =
+        expect_exit(time("--machine high-speed --from 0,0,0 --json - --planner " + planner), 0);
+    const auto json = nlohmann::json::parse(result.out);
+    EXPECT_EQ(json.at("planner"), planner);
+    return json.at("cutting_s").get<double>();
+  };
+  // One line from rest to rest: the model of the control knows the jerk along it, too.
+  EXPECT_NEAR(seconds("jerk"), seconds("control"), 1e-3 * seconds("control"));
+  EXPECT_GT(seconds("s-curve"), 1.04 * seconds("jerk"));
+  const ProcessResult said = expect_exit(time("--machine high-speed --planner jerk"), 0);
+  EXPECT_TRUE(contains(said.out, "on high-speed, planner jerk:")) << said.out;
+  expect_exit(time("--machine high-speed --planner jerk --profile p.csv"), 1,
+              {"--profile: it is of the control's model"});
+  expect_exit(time("--machine high-speed --planner fast"), 1, {"--planner"});
+}
+
 // A zigzag of 1 mm steps that turns by 90 degrees: the machine brakes in each corner.
 std::string zigzag() {
   std::string text = "G21 G90 G17 G94\nG0 X0 Y0 Z0\nG1 X0.7 Y0.7 F3000\n";

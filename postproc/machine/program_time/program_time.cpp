@@ -87,7 +87,8 @@ class SlowPlaces {
 // Seconds of each step, and of each the part below half its feed, as far as its chain is known.
 class StepTimes {
  public:
-  explicit StepTimes(const Machine& machine) : cutter_(machine, ChainCutter::kMostPieces) {}
+  StepTimes(const Machine& machine, FeedPlanner planner)
+      : cutter_(machine, ChainCutter::kMostPieces), machine_(machine), planner_(planner) {}
 
   void add(const ProgramSteps& steps) {
     const auto use = [this](const RunChain& chain) { take(chain); };
@@ -116,9 +117,24 @@ class StepTimes {
       open_[chain.steps.front() - first_open_].seconds += chain.seconds;
       return count_up_to(chain.steps.front() + 1);
     }
-    const ChainMotion motion(chain.stretches);
-    for (std::size_t i = 0; i < chain.stretches.places.size(); ++i) add_stretch(chain, motion, i);
+    if (planner_ != FeedPlanner::kControl) {
+      add_plan(chain);
+    } else {
+      const ChainMotion motion(chain.stretches);
+      for (std::size_t i = 0; i < chain.stretches.places.size(); ++i) add_stretch(chain, motion, i);
+    }
     count_up_to(chain.steps[chain.end_counted - 1] + 1);
+  }
+
+  void add_plan(const RunChain& chain) {
+    const std::vector<PlannedPiece> planned = planned_chain(chain.pieces, machine_, planner_);
+    for (std::uint32_t piece = chain.first_counted; piece < chain.end_counted; ++piece) {
+      OpenStep& open = open_[chain.steps[piece] - first_open_];
+      open.seconds += planned[piece].seconds;
+      if (open.step.kind == StepKind::kCut && open.step.feed > 0) {
+        result_.below_half_feed += planned[piece].slow_seconds;
+      }
+    }
   }
 
   void add_stretch(const RunChain& chain, const ChainMotion& motion, std::size_t i) {
@@ -170,6 +186,8 @@ class StepTimes {
   }
 
   ChainCutter cutter_;
+  Machine machine_;
+  FeedPlanner planner_;
   std::deque<OpenStep> open_;  // whose chain is not at its end
   std::size_t first_open_ = 0;
   SlowPlaces slow_;
@@ -184,8 +202,8 @@ struct ProgramTimer::Work {
   NotTimedList not_timed = {};
 };
 
-ProgramTimer::ProgramTimer(const Machine& machine, const StepOptions& options)
-    : work_(new Work{step_reader(options), StepTimes(machine)}) {}
+ProgramTimer::ProgramTimer(const Machine& machine, const StepOptions& options, FeedPlanner planner)
+    : work_(new Work{step_reader(options), StepTimes(machine, planner)}) {}
 ProgramTimer::ProgramTimer(const ProgramTimer& other)
     : work_(std::make_unique<Work>(*other.work_)) {}
 ProgramTimer::~ProgramTimer() = default;
@@ -203,8 +221,8 @@ void ProgramTimer::add(const gcode::Program& part, const gcode::Interpretation& 
 ProgramTime ProgramTimer::finish() { return work_->times.finish(work_->not_timed); }
 
 ProgramTime time_program(const gcode::Program& program, const gcode::Interpretation& meaning,
-                         const Machine& machine, const StepOptions& options) {
-  ProgramTimer timer(machine, options);
+                         const Machine& machine, const StepOptions& options, FeedPlanner planner) {
+  ProgramTimer timer(machine, options, planner);
   timer.add(program, meaning);
   return timer.finish();
 }

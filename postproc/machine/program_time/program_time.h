@@ -10,6 +10,7 @@
 #include "gcode/state/motion.h"
 #include "gcode/text/program.h"
 #include "postproc/machine/machine.h"
+#include "postproc/machine/program_time/planned_chain.h"
 #include "postproc/machine/program_time/program_time_steps.h"
 
 namespace batten::postproc {
@@ -63,16 +64,19 @@ struct ProgramTime {
   std::vector<NotTimed> not_timed;  // what is left out or assumed
 };
 
-// Linear cost. Throws as cutting_time does for a machine without limits.
+// Linear cost. Throws as cutting_time does for a machine without limits. `planner`: what moves the
+// axes.
 [[nodiscard]] ProgramTime time_program(const gcode::Program& program,
                                        const gcode::Interpretation& meaning, const Machine& machine,
-                                       const StepOptions& options);
+                                       const StepOptions& options,
+                                       FeedPlanner planner = FeedPlanner::kControl);
 
 // The same for a program that is read part by part; see StepReader. Holds some thousand steps. A
 // copy goes on from there.
 class ProgramTimer {
  public:
-  ProgramTimer(const Machine& machine, const StepOptions& options);
+  ProgramTimer(const Machine& machine, const StepOptions& options,
+               FeedPlanner planner = FeedPlanner::kControl);
   ProgramTimer(const ProgramTimer& other);
   ProgramTimer& operator=(const ProgramTimer&) = delete;
   ~ProgramTimer();

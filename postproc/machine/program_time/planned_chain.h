@@ -1,0 +1,39 @@
+// How long the pieces of a chain take by a feed plan, in place of the model of a control: what a
+// control could do that looks ahead without end and knows nothing but the limits of the machine.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "postproc/machine/machine.h"
+#include "postproc/machine/models/cycle_time.h"
+
+namespace batten::postproc {
+
+enum class FeedPlanner : std::uint8_t {
+  kControl,  // none: the model of the machine's control
+  kJerk,     // least time within the limits of each axis (postproc/machine/planner/feed_plan.h)
+  kSCurve,   // Naseath 2007, section 4.5 (postproc/machine/planner/s_curve.h)
+};
+
+[[nodiscard]] std::string_view name_of(FeedPlanner planner);  // "control", "jerk", "s-curve"
+
+struct PlannedPiece {
+  double seconds = 0;
+  double slow_seconds = 0;  // of these, those below half of its feed
+};
+
+// Of each piece of a chain from rest to rest; `pieces` have a length and a feed each
+// (with_length_and_feed). Blending and what else a control does with corners is left out: where the
+// direction jumps by more than the machine can do within a period, the plan stops.
+//
+// By S-curves the machine has the least velocity, acceleration and jerk of its axes, along the path
+// and across it; without a limit on jerk the speed changes at once with all of the acceleration.
+//
+// kJerk plans some thousand pieces a second. Throws std::invalid_argument for kControl.
+[[nodiscard]] std::vector<PlannedPiece> planned_chain(std::span<const TimedPiece> pieces,
+                                                      const Machine& machine, FeedPlanner planner);
+
+}  // namespace batten::postproc
