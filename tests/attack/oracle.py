@@ -27,10 +27,10 @@ BEFORE_OFFSETS = ("STOP_SPINDLE", "START_SPINDLE", "SET_SPINDLE", "FLOOD_", "MIS
 LIKE_LINUXCNC = ("linuxcnc", "grbl", "grblhal", "mach3")
 
 
-def sections(trace, least, apart):
-    """Neighbouring cuts of one feed as one path: [kind, feed or text, points, tolerance of its part].
-    `apart`: and of one tolerance; else it is the least of them. Paths that go no further than `least`
-    are left out."""
+def sections(trace, least):
+    """Neighbouring cuts of one feed as one path: [kind, feed or text, points, parts]. `parts`: of a path
+    those that keep one tolerance, [tolerance, points]. Paths that go no further than `least` are left
+    out."""
     joined, part = [], math.inf
     for kind, what, value in trace:
         if kind == "part":
@@ -38,33 +38,34 @@ def sections(trace, least, apart):
         elif kind == "event":
             # A speed beside the word that starts the spindle, in one block or two.
             if joined and value.startswith(SPEEDS) and str(joined[-1][1]).startswith(STARTS):
-                joined.insert(-1, [kind, value, None, part])
+                joined.insert(-1, [kind, value, None, None])
             elif value.startswith(OFFSETS):
                 at = len(joined)
                 while at > 0 and joined[at - 1][0] == "event" and joined[at - 1][1].startswith(BEFORE_OFFSETS):
                     at -= 1
-                joined.insert(at, [kind, value, None, part])
+                joined.insert(at, [kind, value, None, None])
             else:
-                joined.append([kind, value, None, part])
-        elif kind == "cut" and joined and goes_on(joined[-1], [kind, what, None, part], apart):
-            joined[-1][2].extend(value[1:])
-            joined[-1][3] = min(joined[-1][3], part)
+                joined.append([kind, value, None, None])
         else:
-            joined.append([kind, what, list(value), part])
+            append([kind, what, list(value), [[part, list(value)]]], joined)
     kept = []
     for section in joined:
-        if section[0] != "event" and paths.extent(section[2]) <= least:
-            continue
-        if section[0] == "cut" and kept and goes_on(kept[-1], section, apart):
-            kept[-1][2].extend(section[2])
-            kept[-1][3] = min(kept[-1][3], section[3])
-        else:
-            kept.append(section)
+        if section[0] == "event" or paths.extent(section[2]) > least:
+            append(section, kept)
     return kept
 
 
-def goes_on(before, section, apart):
-    return before[:2] == section[:2] and (not apart or before[3] == section[3])
+def append(section, all_of_them):
+    before = all_of_them[-1] if all_of_them else None
+    if section[0] != "cut" or before is None or before[:2] != section[:2]:
+        all_of_them.append(section)
+        return
+    before[2].extend(section[2][1:] if section[2][0] == before[2][-1] else section[2])
+    for tolerance, points in section[3]:
+        if before[3][-1][0] == tolerance:
+            before[3][-1][1].extend(points)
+        else:
+            before[3].append([tolerance, list(points)])
 
 
 def said(section):
@@ -78,27 +79,31 @@ def said(section):
     return f"{kind}{feed} from {begin} to {end}"
 
 
-def alike(a, b, reach, apart):
+def alike(a, b, reach):
+    """Each part of a path keeps the tolerance that the old program states, or all of it the least of
+    them, where the new one does not tell its parts."""
     if a is None or b is None or a[:2] != b[:2]:
         return False
     if a[0] == "rapid":
         return math.dist(a[2][-1], b[2][-1]) <= reach and math.dist(a[2][0], b[2][0]) <= reach
     if a[0] == "event":
         return True
-    return (not apart or a[3] == b[3]) and paths.together(a[2], b[2], min(reach, a[3] + SLACK))
+    stated = [tolerance for tolerance, _ in a[3]]
+    if paths.together(a[2], b[2], min(reach, min(stated) + SLACK)):
+        return True
+    return len(stated) > 1 and stated == [tolerance for tolerance, _ in b[3]] and all(
+        paths.together(p, q, min(reach, tolerance + SLACK)) for (tolerance, p), (_, q) in zip(a[3], b[3]))
 
 
 def difference(old, new, reach):
-    """Of two traces; empty: none. A move that does not leave `reach` may be in one alone. Each part
-    keeps what the old one states, or all of a path the least of it, where its parts are not told apart."""
+    """Of two traces; empty: none. A move that does not leave `reach` may be in one alone."""
     first = ""
-    for apart in (True, False) if any(kind == "part" for kind, _, _ in old) else (True,):
-        for least in (1e-6, reach / 3, reach):
-            pairs = itertools.zip_longest(sections(old, least, apart), sections(new, least, apart))
-            unlike = next(((a, b) for a, b in pairs if not alike(a, b, reach, apart)), None)
-            if unlike is None:
-                return ""
-            first = first or f"{said(unlike[0])} became {said(unlike[1])}"
+    for least in (1e-6, reach / 3, reach):
+        pairs = itertools.zip_longest(sections(old, least), sections(new, least))
+        unlike = next(((a, b) for a, b in pairs if not alike(a, b, reach)), None)
+        if unlike is None:
+            return ""
+        first = first or f"{said(unlike[0])} became {said(unlike[1])}"
     return first
 
 
@@ -120,10 +125,12 @@ class OldProgram:
     def __init__(self, text, control, inch=None):
         self.reader, self.inch = reader_for(control), inch
         self.traces = {}
+        used = {"nothing"}
         for effect in EFFECTS:
-            if effect == "nothing" or effect in reader.used_effects:
+            if effect in used:
                 reader = self.reader(text, effect, inch)
                 self.traces[effect] = reader.run()
+                used |= reader.used_effects
 
     def harm(self, new, tolerance, of_parts=True):
         """What `new` does otherwise, by the readers; empty: nothing. `of_parts`: also where a part breaks
