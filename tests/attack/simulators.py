@@ -45,7 +45,7 @@ class PlainPrograms(Programs):
     def program_of(self, style):
         self.inch, self.point, self.decimals, self.noise = False, "", 4, self.random.choice([0.0, 0.002])
         self.every_word, self.all_axes, self.blank, self.zero = True, False, " ", "G1"
-        self.comments, self.last, self.last_feed = False, dict.fromkeys("XYZ"), None
+        self.comments, self.states, self.last, self.last_feed = False, 0.0, dict.fromkeys("XYZ"), None
         lines = ["G21", "G90"]
         for chain in getattr(self, style)():
             lines += self.chain_lines(chain, style, 0.0)
