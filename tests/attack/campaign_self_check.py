@@ -145,6 +145,12 @@ X6 Y0.1
 (TOLERANCE 0.02 MM)
 X7 Y0
 X8 Y0.2
+M8
+(TOLERANCE 0.02)
+X9 Y0
+X9.5 Y0.1
+(TOLERANCE 0.004)
+X10 Y0.2
 M2
 """
 PART_CHANGES = [
@@ -155,6 +161,8 @@ PART_CHANGES = [
     ("X8 Y0.2", "X8 Y0.218", True, "a place of a part that is moved by more than is asked for"),
     ("(TOLERANCE 0.003)\n", "", False, "the words of a part lost"),
     ("(TOLERANCE 0.003)\nX4 Y0\nX5 Y0.2", "X4 Y0\nX5 Y0.208\n(TOLERANCE 0.003)", True, "the words of a part moved"),
+    ("(TOLERANCE 0.02 MM)\nX7 Y0\nX8 Y0.2\nM8\n(TOLERANCE 0.02)\nX9 Y0\n", "X7 Y0\nX8 Y0.2\nM8\n(TOLERANCE 0.02)\nX9 Y0.008\n",
+     False, "the words of a part lost, and elsewhere a place of another part moved by less than that states"),
 ]
 CASES = [("linuxcnc", PLAIN, PLAIN_CHANGES), ("grbl", PLAIN, PLAIN_CHANGES), ("fanuc", FANUC, FANUC_CHANGES),
          ("siemens", SIEMENS, SIEMENS_CHANGES), ("heidenhain", KLARTEXT, KLARTEXT_CHANGES), ("linuxcnc", PARTS, PART_CHANGES)]
