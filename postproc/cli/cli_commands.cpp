@@ -682,10 +682,11 @@ TimeCommand time_command(Arguments& in) {
         "--machine: no machine given; `batten machines` lists them, a file NAME.toml is your own");
   }
   command.start = start_given(in);
+  constexpr auto choice = [](FeedPlanner planner) {
+    return Choice<FeedPlanner>{planner, name_of(planner), ""};
+  };
   static constexpr std::array kPlanners = {
-      Choice<FeedPlanner>{FeedPlanner::kControl, "control", ""},
-      Choice<FeedPlanner>{FeedPlanner::kJerk, "jerk", ""},
-      Choice<FeedPlanner>{FeedPlanner::kSCurve, "s-curve", ""}};
+      choice(FeedPlanner::kControl), choice(FeedPlanner::kJerk), choice(FeedPlanner::kSCurve)};
   choose(command.planner, "planner", std::span<const Choice<FeedPlanner>>(kPlanners), in);
   if (command.planner != FeedPlanner::kControl && !command.profile_file.empty()) {
     in.complain("--profile: it is of the control's model, not of --planner {}",

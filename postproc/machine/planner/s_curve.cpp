@@ -41,11 +41,7 @@ bool is_extremum(const Level& before, const Level& level, const Level& after) {
 
 // Distance over which the speed changes from one to the other, without acceleration at both.
 double s_curve_distance(double v0, double v1, const SCurveLimits& limits) {
-  const double change = std::abs(v1 - v0);
-  const double a = limits.acceleration;
-  const double j = limits.jerk;
-  const double time = change <= a * a / j ? 2 * std::sqrt(change / j) : change / a + a / j;
-  return 0.5 * (v0 + v1) * time;
+  return 0.5 * (v0 + v1) * s_curve_change(std::abs(v1 - v0), limits);
 }
 
 // The greatest speed, up to `high`, that an S-curve from `low` reaches in `distance`.
@@ -67,6 +63,12 @@ void lower(SCurveNode& node, const SCurveNode& neighbour, const SCurveLimits& li
 }
 
 }  // namespace
+
+double s_curve_change(double change, const SCurveLimits& limits) {
+  const double a = limits.acceleration;
+  const double j = limits.jerk;
+  return change <= a * a / j ? 2 * std::sqrt(change / j) : change / a + a / j;
+}
 
 std::vector<SCurveNode> s_curve_nodes(std::span<const geometry::ParameterSample> samples,
                                       const SCurveLimits& limits) {

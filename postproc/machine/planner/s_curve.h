@@ -14,8 +14,11 @@ namespace batten::postproc {
 struct SCurveLimits {
   double velocity = 400;       // mm/s
   double acceleration = 4000;  // mm/s^2, along the path, and across it: curvature * v^2
-  double jerk = 20000;         // mm/s^3, along the path
+  double jerk = 20000;         // mm/s^3, along the path; may be infinite
 };
+
+// Seconds for a change of the speed (mm/s, not negative) without acceleration at both ends.
+[[nodiscard]] double s_curve_change(double change, const SCurveLimits& limits);
 
 // A place that is passed at this speed without acceleration.
 struct SCurveNode {

@@ -1,7 +1,6 @@
 #include "postproc/machine/program_time/planned_chain.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -31,19 +30,20 @@ KinematicPathLimits limits_of_piece(const TimedPiece& piece, const Machine& mach
   return limits;
 }
 
+SCurveLimits s_curve_limits(const Machine& machine) {
+  SCurveLimits limits;
+  limits.velocity = std::min(machine.max_velocity(), machine.path_feed);
+  limits.acceleration = std::min(machine.max_acceleration(), machine.path_acceleration);
+  limits.jerk = std::min(machine.max_jerk(), machine.path_jerk);
+  return limits;
+}
+
 // A piece is slow where it takes so many times as long as the machine takes to its feed. A plan has
 // nodes in such times: along slow pieces nothing happens but at stops.
 constexpr double kSlow = 300;
 
 // The part of the acceleration and of the jerk that bends of slow pieces may take.
 constexpr double kLittle = 0.1;
-
-// s, for a change of the speed (mm/s) without acceleration at both ends.
-double change_time(double change, double acceleration, double jerk) {
-  if (std::isinf(jerk)) return change / acceleration;
-  return change * jerk <= acceleration * acceleration ? 2 * std::sqrt(change / jerk)
-                                                      : change / acceleration + acceleration / jerk;
-}
 
 // Pieces of one feed, which are planned as one, and how fast its ends may be passed.
 struct Stretch {
@@ -115,30 +115,32 @@ class JerkPlans {
     }
   }
 
+  // mm/s, in any direction.
+  [[nodiscard]] double speed_of(const Stretch& stretch) const {
+    return std::min(pieces_[stretch.first].feed / kMinute, s_curve_limits(machine_).velocity);
+  }
+
   // Whether its pieces are slow, and bend so little that they are run at the feed.
   [[nodiscard]] bool is_slow(const Stretch& stretch) const {
-    const KinematicPathLimits limits = limits_of_piece(pieces_[stretch.first], machine_);
-    const double acceleration = limits.acceleration.minCoeff();
-    const double jerk = limits.jerk.minCoeff();
-    const double v = std::min(limits.feed, limits.speed.minCoeff());
-    const double change = change_time(v, acceleration, jerk);
+    const SCurveLimits limits = s_curve_limits(machine_);
+    const double v = speed_of(stretch);
+    const double change = s_curve_change(v, limits);
     return std::ranges::all_of(std::span(path_).subspan(stretch.first, stretch.count),
                                [&](const geometry::PathPiece& piece) {
                                  const double curvature = greatest_curvature(piece);
                                  return geometry::length_of(piece) > kSlow * v * change &&
-                                        curvature * v * v <= kLittle * acceleration &&
-                                        curvature * curvature * v * v * v <= kLittle * jerk;
+                                        curvature * v * v <= kLittle * limits.acceleration &&
+                                        curvature * curvature * v * v * v <= kLittle * limits.jerk;
                                });
   }
 
   // Each change of speed at a joint takes longer than its way at the feed.
   void count_slow(const Stretch& stretch, std::vector<PlannedPiece>& all) const {
     const KinematicPathLimits limits = limits_of_piece(pieces_[stretch.first], machine_);
-    const double v = std::min(limits.feed, limits.speed.minCoeff());
-    const auto lost = [&](double joint) {
+    const double v = speed_of(stretch);
+    const auto lost = [&, of = s_curve_limits(machine_)](double joint) {
       const double change = std::max(v - joint, 0.0);
-      return change_time(change, limits.acceleration.minCoeff(), limits.jerk.minCoeff()) * change /
-             (2 * v);
+      return s_curve_change(change, of) * change / (2 * v);
     };
     double start = stretch.ends.start_speed;
     for (std::size_t i = stretch.first; i < stretch.first + stretch.count; ++i) {
@@ -170,14 +172,6 @@ class JerkPlans {
   std::vector<geometry::PathPiece> path_;
   std::vector<Stretch> stretches_;
 };
-
-SCurveLimits s_curve_limits(const Machine& machine) {
-  SCurveLimits limits;
-  limits.velocity = std::min(machine.max_velocity(), machine.path_feed);
-  limits.acceleration = std::min(machine.max_acceleration(), machine.path_acceleration);
-  limits.jerk = std::min(machine.max_jerk(), machine.path_jerk);
-  return limits;
-}
 
 // A place that is passed no faster than this, as a curvature: S-curves go by nothing else. 0 is
 // rest.
@@ -259,11 +253,6 @@ std::vector<PlannedPiece> by_s_curves(std::span<const TimedPiece> pieces, const 
 }
 
 }  // namespace
-
-std::string_view name_of(FeedPlanner planner) {
-  constexpr std::array<std::string_view, 3> kNames = {"control", "jerk", "s-curve"};
-  return kNames[static_cast<std::size_t>(planner)];
-}
 
 std::vector<PlannedPiece> planned_chain(std::span<const TimedPiece> pieces, const Machine& machine,
                                         FeedPlanner planner) {

@@ -2,6 +2,7 @@
 // control could do that looks ahead without end and knows nothing but the limits of the machine.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string_view>
@@ -18,7 +19,10 @@ enum class FeedPlanner : std::uint8_t {
   kSCurve,   // Naseath 2007, section 4.5 (postproc/machine/planner/s_curve.h)
 };
 
-[[nodiscard]] std::string_view name_of(FeedPlanner planner);  // "control", "jerk", "s-curve"
+[[nodiscard]] constexpr std::string_view name_of(FeedPlanner planner) {
+  constexpr std::string_view kNames[] = {"control", "jerk", "s-curve"};
+  return kNames[static_cast<std::size_t>(planner)];
+}
 
 struct PlannedPiece {
   double seconds = 0;
