@@ -448,6 +448,14 @@ TEST(ProgramTimeBelowHalfTheFeed, IsCountedToTheMoment) {
   EXPECT_NEAR(timed("G21 G90\nG1 X50 F6000\nM2\n").below_half_feed, 0.1, 1e-9);
 }
 
+// From rest to 50 mm/s, from 50 down to the next feed of 10 before it begins, from 5 mm/s to rest;
+// the line that is run at its feed from end to end has none.
+TEST(ProgramTimeBelowHalfTheFeed, IsCountedWhereALineEndsSlowerThanItBegins) {
+  const double expected = (50 + 40 + 5) / 1000.0;
+  EXPECT_NEAR(timed("G21 G90\nG1 X30 F6000\nX60\nX90\nX100 F600\nM2\n").below_half_feed, expected,
+              1e-9);
+}
+
 TEST(ProgramTimeSlowPlaces, AreWhereTheCornersAre) {
   Machine m = machine_of(ControllerModel::kLookAhead);
   std::string text = "G21 G90\nG1 X100 F6000\n";  // line 2: fast
