@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <vector>
 
 #include "geometry/path/cubic_polynomial.h"
 
@@ -140,6 +141,22 @@ double chord_deviation(const CurvePieces& pieces, double from, double to) {
     raise_to(pieces.part(i, from, to), chord, kHalvings, greatest);
   }
   return std::sqrt(greatest);
+}
+
+BesideCurve line_beside(const CurvePieces& pieces, double from, double to, const Line& line) {
+  const Vector3 left = left_of(line.end - line.start);
+  BesideCurve beside;
+  for (std::size_t i = pieces.index_of(from); i < pieces.size() && pieces.breaks()[i] < to; ++i) {
+    const CubicPolynomial piece(pieces.part(i, from, to), line.start);
+    std::vector<double> places = {0, 1};
+    piece.append_extrema(left, 0, places);
+    for (const double t : places) {
+      const double curve_to_left = piece.value(t).dot(left);
+      beside.left = std::max(beside.left, -curve_to_left);
+      beside.right = std::max(beside.right, curve_to_left);
+    }
+  }
+  return beside;
 }
 
 double leaves_tangent_at(const CurvePieces& pieces, double from, double to, double distance) {

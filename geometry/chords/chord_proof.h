@@ -71,6 +71,19 @@ class ChordProof {
 [[nodiscard]] double leaves_tangent_at(const CurvePieces& pieces, double from, double to,
                                        double distance);
 
+// How far (mm) a path is beside a curve on either side of the way of travel, seen from above. With
+// the workpiece to the right, what is left of the curve leaves material and what is right of it
+// cuts into the workpiece; to the left it is the other way round.
+struct BesideCurve {
+  double left = 0;
+  double right = 0;
+};
+
+// A line that stands for the curve between two parameters, from < to: the greatest distances along
+// the normal of the line. Both 0 for a line that is upright or a point.
+[[nodiscard]] BesideCurve line_beside(const CurvePieces& pieces, double from, double to,
+                                      const Line& line);
+
 // A chord and the section of curve between its ends.
 struct ChordHeight {
   double chord = 0;   // mm, its length

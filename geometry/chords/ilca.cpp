@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "geometry/basic/require.h"
+#include "geometry/basic/rounding.h"
 #include "geometry/chords/chord_proof.h"
 #include "geometry/path/curve_pieces.h"
 
@@ -86,6 +87,33 @@ ChordRow blca(const BsplineCurve& curve, double from, double to, double toleranc
     }
   }
   return row;
+}
+
+TangentLines tangent_lines(const BsplineCurve& curve, std::span<const double> parameters,
+                           double moved) {
+  const CurvePieces pieces(curve, parameters.front(), parameters.back());
+  TangentLines lines;
+  Point3 at = pieces.point_at(parameters.front());
+  for (std::size_t i = 0; i + 1 < parameters.size(); ++i) {
+    const Point3 start = pieces.point_at(parameters[i]);
+    const Vector3 way = pieces.point_at(parameters[i + 1]) - start;
+    const Vector3 tangent = pieces.leaving(parameters[i]);
+    const double along = way.dot(tangent);
+    const Vector3 across = way - along * tangent;
+    const Point3 begin = start + moved * across.stableNormalized();
+    if ((begin - at).norm() > kSamePlace) {
+      lines.path.emplace_back(Line{at, begin});
+      lines.jumped += (begin - at).norm();
+      ++lines.jumps;
+    }
+    const Line line{begin, begin + along * tangent};
+    const BesideCurve beside = line_beside(pieces, parameters[i], parameters[i + 1], line);
+    lines.beside.left = std::max(lines.beside.left, beside.left);
+    lines.beside.right = std::max(lines.beside.right, beside.right);
+    lines.path.emplace_back(line);
+    at = line.end;
+  }
+  return lines;
 }
 
 }  // namespace batten::geometry

@@ -5,9 +5,12 @@
 
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <vector>
 
+#include "geometry/chords/chord_proof.h"
 #include "geometry/path/bspline_curve.h"
+#include "geometry/path/path.h"
 
 namespace batten::geometry {
 
@@ -46,5 +49,24 @@ struct ChordRow {
 //
 // Requires and throws as ilca.
 [[nodiscard]] ChordRow blca(const BsplineCurve& curve, double from, double to, double tolerance);
+
+// Lines along the tangents of a curve, with jumps between them.
+struct TangentLines {
+  Path path;              // lines and jumps, in the order in which they are run
+  std::size_t jumps = 0;  // among them
+  double jumped = 0;      // mm, all jumps together
+  BesideCurve beside;     // of the lines, the greatest
+};
+
+// The tool path that the paper draws over the vertices of BLCA, for comparison only: from each
+// vertex a line along the tangent until abeam of the next vertex, moved by `moved` (mm, >= 0)
+// across it to the side where the curve goes, and a jump to where it begins. Unmoved, the lines are
+// on the outside of each bend by up to the tolerance. Moved by the tolerance, which is the paper's
+// correction, they are on its inside, each whole step ends on the curve, and the length of the path
+// is equation (20). It ends where the last line does, beside the end of the curve.
+//
+// `parameters`: of `curve`, two or more, increasing. Requires degree 3 or less.
+[[nodiscard]] TangentLines tangent_lines(const BsplineCurve& curve,
+                                         std::span<const double> parameters, double moved);
 
 }  // namespace batten::geometry

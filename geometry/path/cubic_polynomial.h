@@ -33,6 +33,12 @@ class CubicPolynomial {
                        c3_.dot(direction), offset, places);
   }
 
+  // The same where the value's part along `direction` is least or greatest.
+  void append_extrema(const Vector3& direction, double offset, std::vector<double>& places) const {
+    append_cubic_roots(c1_.dot(direction), 2 * c2_.dot(direction), 3 * c3_.dot(direction), 0,
+                       offset, places);
+  }
+
   // The same where the first derivative is shortest or longest: normal to the second.
   void append_speed_extrema(double offset, std::vector<double>& places) const {
     append_cubic_roots(c1_.dot(c2_), 3 * c1_.dot(c3_) + 2 * c2_.squaredNorm(), 9 * c2_.dot(c3_),

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <span>
 #include <stdexcept>
 #include <vector>
 
@@ -143,28 +142,6 @@ TEST(Blca, StepsAsTheClosedFormSays) {
   }
 }
 
-// The tool path that the paper draws over these vertices: from each a jump of length `tolerance`
-// across the tangent, to the side where the curve goes, then along the tangent until abeam of the
-// next vertex, which is met there when the step was a whole one. Not a path to be cut: it leaves
-// the curve by the tolerance in every step.
-//
-// Requires `parameters` of the curve, increasing.
-Path blca_tool_path(const BsplineCurve& curve, std::span<const double> parameters,
-                    double tolerance) {
-  Path path;
-  for (std::size_t i = 0; i + 1 < parameters.size(); ++i) {
-    const Point3 start = curve.point_at(parameters[i]);
-    const Vector3 way = curve.point_at(parameters[i + 1]) - start;
-    const Vector3 tangent = curve.direction_at(parameters[i]);
-    const double along = way.dot(tangent);
-    const Vector3 across = way - along * tangent;
-    const Point3 moved = start + tolerance * across.stableNormalized();
-    path.push_back(Line{start, moved});
-    path.push_back(Line{moved, moved + along * tangent});
-  }
-  return path;
-}
-
 TEST(Blca, HasTheFiguresOfTheRestatedMethod) {
   struct Example {
     Parabola parabola;
@@ -193,20 +170,66 @@ TEST(Blca, HasTheFiguresOfTheRestatedMethod) {
     const ChordRow row = blca(curve, parabola.from, parabola.to, tolerance);
     ASSERT_EQ(row.parameters.size(), x.size());
     for (std::size_t i = 0; i < x.size(); ++i) EXPECT_NEAR(row.parameters[i], x[i], 1e-4);
-    const Path path = blca_tool_path(curve, row.parameters, tolerance);
-    ASSERT_EQ(path.size(), 2 * (x.size() - 1));
-    double lengths[2] = {};  // of the jumps, of the secants
-    for (std::size_t i = 0; i < path.size(); ++i) lengths[i % 2] += length_of(path[i]);
-    EXPECT_NEAR(lengths[1], secants, 1e-6);
-    EXPECT_NEAR(lengths[0] + lengths[1], with_jumps, 1e-6);
     EXPECT_NEAR(parabola.chords_length(row.parameters), chords, 1e-6);
     EXPECT_NEAR(row.deviation, deviation, 1e-6);
+    const TangentLines moved = tangent_lines(curve, row.parameters, tolerance);
+    ASSERT_EQ(moved.path.size(), 2 * (x.size() - 1));
+    double length = 0;
+    for (const PathPiece& piece : moved.path) length += length_of(piece);
+    EXPECT_EQ(moved.jumps, x.size() - 1);
+    EXPECT_NEAR(length - moved.jumped, secants, 1e-6);
+    EXPECT_NEAR(length, with_jumps, 1e-6);
     // A whole step ends on the curve: the secant meets the next vertex.
     for (std::size_t i = 0; i + 2 < x.size(); ++i) {
-      EXPECT_NEAR(length_of(path[2 * i]), tolerance, 1e-12);
-      EXPECT_LE((end_point(path[2 * i + 1]) - curve.point_at(row.parameters[i + 1])).norm(), 1e-9);
+      EXPECT_NEAR(length_of(moved.path[2 * i]), tolerance, 1e-12);
+      EXPECT_LE((end_point(moved.path[2 * i + 1]) - curve.point_at(row.parameters[i + 1])).norm(),
+                1e-9);
     }
   }
+}
+
+// The first parabola bends to the right on its way, the second one to the left. A tangent leaves
+// the curve by the tolerance at the end of its step, to the outside of the bend; moved by the
+// tolerance it begins as far on the inside.
+TEST(TangentLinesOfBlca, AreOutsideTheBendUnmovedAndInsideItMoved) {
+  struct Example {
+    Parabola parabola;
+    double tolerance;
+    double BesideCurve::*outside;
+    double BesideCurve::*inside;
+  };
+  const Example examples[] = {
+      {kFlatParabola, .05, &BesideCurve::left, &BesideCurve::right},
+      {kSteepParabola, .045, &BesideCurve::right, &BesideCurve::left},
+  };
+  for (const auto& [parabola, tolerance, outside, inside] : examples) {
+    SCOPED_TRACE(testing::Message() << "tolerance " << tolerance);
+    const BsplineCurve curve = parabola.curve();
+    const ChordRow row = blca(curve, parabola.from, parabola.to, tolerance);
+    const TangentLines unmoved = tangent_lines(curve, row.parameters, 0);
+    EXPECT_NEAR(unmoved.beside.*outside, tolerance, 1e-9);
+    EXPECT_NEAR(unmoved.beside.*inside, 0, 1e-9);
+    // The first line begins on the curve, without a jump; after all whole steps there is one.
+    EXPECT_EQ(unmoved.jumps, row.parameters.size() - 2);
+    EXPECT_NEAR(unmoved.jumped, tolerance * static_cast<double>(unmoved.jumps), 1e-9);
+    const TangentLines moved = tangent_lines(curve, row.parameters, tolerance);
+    EXPECT_NEAR(moved.beside.*outside, 0, 1e-9);
+    EXPECT_NEAR(moved.beside.*inside, tolerance, 1e-9);
+  }
+}
+
+// Chords of a bend are on its inside, by the closed form of their deviation.
+TEST(LineBeside, OfAChordIsItsDeviationOnTheInsideOfTheBend) {
+  const BsplineCurve curve = kFlatParabola.curve();
+  const CurvePieces pieces(curve, 2, 11);
+  const Line chord{curve.point_at(3), curve.point_at(7)};
+  const BesideCurve beside = line_beside(pieces, 3, 7, chord);
+  EXPECT_NEAR(beside.right, kFlatParabola.deviation(3, 7), 1e-12);
+  EXPECT_NEAR(beside.left, 0, 1e-12);
+  // Going back, left and right change places.
+  const BesideCurve back = line_beside(pieces, 3, 7, {chord.end, chord.start});
+  EXPECT_NEAR(back.left, beside.right, 1e-12);
+  EXPECT_NEAR(back.right, 0, 1e-12);
 }
 
 // y = x^3 bends to the other side at 0: the tangent of a place before it comes near again.
