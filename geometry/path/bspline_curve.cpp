@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <stdexcept>
 #include <string>
@@ -237,6 +238,30 @@ BsplineCurve BsplineCurve::part(double from, double to) const {
     points.push_back(blossom(basis_, control_points_, basis_.find_span(inside), &knots[i + 1]));
   }
   return {BsplineBasis(degree(), std::move(knots)), std::move(points)};
+}
+
+BsplineCurve ring_of(const std::vector<double>& breakpoints,
+                     const std::vector<Point3>& control_points) {
+  constexpr std::size_t kDegree = 3;
+  const std::size_t n = control_points.size();
+  require(n >= kDegree, "ring_of: control points", static_cast<double>(n), "3 or more");
+  require(breakpoints.size() == n + 1, "ring_of: breakpoints",
+          static_cast<double>(breakpoints.size()), "one more than control points");
+  const bool increase =
+      std::ranges::adjacent_find(breakpoints, std::greater_equal{}) == breakpoints.end();
+  require(increase, "ring_of: breakpoints from", breakpoints.front(), "strictly increasing ones");
+  // Round once more at either end: the knots of the spans before and after, and the points whose
+  // functions reach over the begin. Function 1 has its middle knot there.
+  const double once = breakpoints.back() - breakpoints.front();
+  std::vector<double> knots;
+  for (std::size_t i = n - kDegree; i < n; ++i) knots.push_back(breakpoints[i] - once);
+  knots.insert(knots.end(), breakpoints.begin(), breakpoints.end());
+  for (std::size_t i = 1; i <= kDegree; ++i) knots.push_back(breakpoints[i] + once);
+  std::vector<Point3> points = {control_points.back()};
+  points.insert(points.end(), control_points.begin(), control_points.end());
+  points.insert(points.end(), control_points.begin(), control_points.begin() + 2);
+  const BsplineCurve round(BsplineBasis(kDegree, std::move(knots)), std::move(points));
+  return round.part(breakpoints.front(), breakpoints.back());
 }
 
 std::vector<double> BsplineCurve::breakpoints() const {

@@ -83,6 +83,14 @@ class BsplineCurve {
   std::vector<Point3> control_points_;
 };
 
+// A closed cubic that has no seam: it ends where it begins with the same first and second
+// derivatives. The control points go round once, and curve begins beside the first of them, which
+// is not repeated; the breakpoints are one more and increase strictly. The result is clamped there.
+//
+// Throws std::invalid_argument where they do not, or for fewer than 3 control points.
+[[nodiscard]] BsplineCurve ring_of(const std::vector<double>& breakpoints,
+                                   const std::vector<Point3>& control_points);
+
 // How far a curve was moved when another one with the same knots was made of it: D(u) = C(u) -
 // C0(u) is a spline whose control points are the moves of the control points. For each span of
 // displacement.breakpoints() a bound (mm) on |D| that holds for every u, above the greatest |D| of

@@ -22,8 +22,9 @@ class SpanDerivatives {
     const Vector3 first = s * s * first_[0] + 2 * s * t * first_[1] + t * t * first_[2];
     const Vector3 second = s * second_[0] + t * second_[1];
     const double speed = first.norm();
-    const double across = first.cross(second).norm();
-    return {parameter, 0, speed, speed > 0 ? across / (speed * speed * speed) : 0};
+    const Vector3 axis = first.cross(second);
+    const double curvature = speed > 0 ? axis.norm() / (speed * speed * speed) : 0;
+    return {parameter, 0, speed, curvature, axis};
   }
 
  private:
@@ -70,6 +71,22 @@ double mean_curvature(std::span<const ParameterSample> samples) {
 
 double sampled_length(std::span<const ParameterSample> samples) {
   return samples.empty() ? 0 : samples.back().distance;
+}
+
+std::size_t bends_of(std::span<const ParameterSample> samples, double least_turn) {
+  std::size_t bends = 0;
+  double turn = 0;
+  Vector3 axis = Vector3::Zero();  // the last one: where it goes straight on it has none
+  for (std::size_t i = 1; i < samples.size(); ++i) {
+    const ParameterSample& a = samples[i - 1];
+    const ParameterSample& b = samples[i];
+    if (axis.dot(b.axis) < 0) turn = 0;
+    if (!b.axis.isZero(0)) axis = b.axis;
+    const double before = turn;
+    turn += 0.5 * (a.curvature + b.curvature) * (b.distance - a.distance);
+    if (before < least_turn && turn >= least_turn) ++bends;
+  }
+  return bends;
 }
 
 double bending(std::span<const ParameterSample> samples) {

@@ -2,6 +2,7 @@
 // are made with. docs/algorithms/naseath.md says how it differs from a mean over the length.
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -14,9 +15,10 @@ inline constexpr int kNaseathSteps = 400;
 
 struct ParameterSample {
   double parameter = 0;
-  double distance = 0;   // mm along the curve from its start
-  double speed = 0;      // mm per unit of the parameter
-  double curvature = 0;  // 1/mm; 0 where the speed is 0
+  double distance = 0;             // mm along the curve from its start
+  double speed = 0;                // mm per unit of the parameter
+  double curvature = 0;            // 1/mm; 0 where the speed is 0
+  Vector3 axis = Vector3::Zero();  // that it turns about there, of any length
 };
 
 // Every breakpoint once (seen from the span before it) and `steps` equal steps in every span;
@@ -35,5 +37,9 @@ struct ParameterSample {
 
 // The integral of curvature^2 over the length (1/mm), trapezoidal rule.
 [[nodiscard]] double bending(std::span<const ParameterSample> samples);
+
+// How often the curve bends: sections in which it turns one way, about axes less than 90 degrees
+// from those before, by `least_turn` (radians) or more in all.
+[[nodiscard]] std::size_t bends_of(std::span<const ParameterSample> samples, double least_turn);
 
 }  // namespace batten::geometry

@@ -38,16 +38,18 @@ inline BsplineCurve curve_in(const nlohmann::json& given) {
 inline BsplineCurve curve_of_case(const std::string& name) { return curve_in(naseath_case(name)); }
 
 // The method as the thesis has it, and as we repaired it.
-inline NaseathOptions literal(double radius) {
+inline NaseathOptions literal(double radius, int held_points = 0) {
   NaseathOptions options;
   options.radius = radius;
+  options.held_points = held_points;
   options.repairs = NaseathRepairs::none();
   return options;
 }
 
-inline NaseathOptions repaired(double radius) {
+inline NaseathOptions repaired(double radius, int held_points = 0) {
   NaseathOptions options;
   options.radius = radius;
+  options.held_points = held_points;
   return options;
 }
 

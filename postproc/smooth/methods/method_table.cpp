@@ -87,14 +87,20 @@ double greatest_curvature_of(const Path& path) {
 }
 
 // Some methods use the tolerance up to its last digit, and the proof needs room.
+constexpr double kRoom = 1.03;
+
 std::optional<double> proved_deviation(const Path& old_path, const Path& new_path,
                                        ToleranceKind kind, double tolerance) {
-  constexpr double kRoom = 1.03;
   const auto found = kind == ToleranceKind::kPath
                          ? geometry::compare_paths(old_path, new_path, kRoom * tolerance)
                          : geometry::compare_in_band(old_path, new_path, kRoom * tolerance).paths;
   if (found.verdict != geometry::Verdict::kProved) return std::nullopt;
   return found.bounds.at_most;
+}
+
+void widen(geometry::BesideCurve& beside, const geometry::BesideCurve& also) {
+  beside.left = std::max(beside.left, also.left);
+  beside.right = std::max(beside.right, also.right);
 }
 
 }  // namespace
@@ -103,12 +109,11 @@ std::vector<PolylineRow> method_rows(const PolylineCase& given, double tolerance
                                      const TableSettings& settings) {
   if (given.points.size() < 2) throw std::invalid_argument("fewer than two points");
   geometry::require_positive_tolerance(tolerance, "method_rows");
-  const Path input = geometry::path_through(given.points);
+  const std::vector<Point3> points = given.ring ? from_longest_side(given.points) : given.points;
+  const Path input = geometry::path_through(points);
   std::vector<PolylineRow> rows = {{"as it is", ToleranceKind::kPath,
                                     PolylineRow::Figures{plan_feed(input, settings.limits).time,
                                                          std::nullopt, 0.0, input.size()}}};
-  const std::vector<Point3> turned =
-      given.ring ? from_longest_side(given.points) : std::vector<Point3>();
   for (const ToleranceKind kind : {ToleranceKind::kPath, ToleranceKind::kBand}) {
     for (const auto& choice : methods()) {
       if (choice.value == Method::kBest || choice.value == Method::kNone) continue;
@@ -123,15 +128,12 @@ std::vector<PolylineRow> method_rows(const PolylineCase& given, double tolerance
       request.guo_lambda = settings.guo_lambda;
       request.limits = {settings.limits.feed, settings.limits.speed, settings.limits.acceleration,
                         settings.limits.jerk};
-      const bool turn = given.ring && is_of_corners(choice.value);
-      const std::vector<Point3>& points = turn ? turned : given.points;
       PolylineRow row{std::string(choice.name), kind, std::nullopt};
       if (const auto made = curve_of(choice.value, points, request)) {
         const Path path = pieces_of(made->path.curve);
-        row.figures = PolylineRow::Figures{
-            plan_feed(path, settings.limits).time, greatest_curvature_of(path),
-            proved_deviation(turn ? geometry::path_through(points) : input, path, kind, tolerance),
-            path.size()};
+        row.figures =
+            PolylineRow::Figures{plan_feed(path, settings.limits).time, greatest_curvature_of(path),
+                                 proved_deviation(input, path, kind, tolerance), path.size()};
       }
       rows.push_back(std::move(row));
     }
@@ -152,51 +154,89 @@ std::vector<LinesRow> line_rows(const BsplineCurve& curve, double tolerance, dou
     for (const double u : parameters) points.push_back(curve.point_at(u));
     return points;
   };
-  const auto row = [&](std::string method, std::span<const Point3> points) {
-    const Path lines = geometry::path_through(points);
-    double length = 0;
-    for (const geometry::PathPiece& line : lines) length += geometry::length_of(line);
-    constexpr double kRoom = 1.03;
-    const auto found = geometry::compare_paths(beziers, lines, kRoom * tolerance);
-    return LinesRow{std::move(method), lines.size(), length, found.bounds.at_most};
+  const geometry::CurvePieces pieces(curve, from, to);
+  const auto along = [&](std::string method, const Path& path) {
+    LinesRow row{std::move(method)};
+    row.lines = path.size();
+    for (const geometry::PathPiece& piece : path) row.length += geometry::length_of(piece);
+    row.deviation = geometry::compare_paths(beziers, path, kRoom * tolerance).bounds.at_most;
+    return row;
+  };
+  // `points` stand for the curve's points at `parameters`, as many.
+  const auto through = [&](std::string method, std::span<const Point3> points,
+                           std::span<const double> parameters) {
+    LinesRow row = along(std::move(method), geometry::path_through(points));
+    for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+      if (!(parameters[i] < parameters[i + 1])) continue;
+      widen(row.beside, geometry::line_beside(pieces, parameters[i], parameters[i + 1],
+                                              {points[i], points[i + 1]}));
+    }
+    return row;
+  };
+  const auto with_jumps = [&](std::string method, const geometry::TangentLines& lines) {
+    LinesRow row = along(std::move(method), lines.path);
+    row.lines -= lines.jumps;
+    row.jumps = lines.jumps;
+    row.jumped = lines.jumped;
+    row.beside = lines.beside;
+    return row;
   };
   std::vector<LinesRow> rows;
   const auto equal = geometry::ilca(curve, from, to, {tolerance, first_step});
-  rows.push_back(equal ? row("ilca", on_curve(equal->parameters)) : LinesRow{"ilca"});
-  rows.push_back(row("blca", on_curve(geometry::blca(curve, from, to, tolerance).parameters)));
-  rows.push_back(row(
-      "chord", on_curve(geometry::chord_vertices(curve, from, to, {.max_deviation = tolerance}))));
+  rows.push_back(equal ? through("ilca", on_curve(equal->parameters), equal->parameters)
+                       : LinesRow{"ilca"});
+  const std::vector<double> steps = geometry::blca(curve, from, to, tolerance).parameters;
+  rows.push_back(through("blca", on_curve(steps), steps));
+  rows.push_back(with_jumps("blca-tangents", geometry::tangent_lines(curve, steps, 0)));
+  rows.push_back(with_jumps("blca-jumps", geometry::tangent_lines(curve, steps, tolerance)));
+  const std::vector<double> chords =
+      geometry::chord_vertices(curve, from, to, {.max_deviation = tolerance});
+  rows.push_back(through("chord", on_curve(chords), chords));
   std::vector<Point3> links;
+  std::vector<double> passed;
   for (const geometry::LinkVertex& vertex : geometry::min_link_vertices(
            curve, from, to, {.tolerance = tolerance, .gates_per_link = kFineGates})) {
     links.push_back(vertex.place);
+    passed.push_back(vertex.parameter);
   }
-  rows.push_back(row("minlink", links));
+  rows.push_back(through("minlink", links, passed));
   return rows;
 }
 
-std::vector<CurveRow> tube_rows(const BsplineCurve& curve, double radius,
+std::vector<CurveRow> tube_rows(const CurveCase& given, double radius,
                                 const TableSettings& settings) {
-  const auto row = [&](std::string method, const BsplineCurve& made) {
+  constexpr int kHoldCurvature = 3;
+  const BsplineCurve& curve = given.curve;
+  const auto row = [&](std::string method, const BsplineCurve& made, double displacement) {
     const auto samples = geometry::parameter_samples(made, geometry::kNaseathSteps);
-    return CurveRow{std::move(method), geometry::mean_curvature(samples),
-                    geometry::max_curvature(samples), geometry::sampled_length(samples),
-                    s_curve_time(samples, settings.s_curve)};
+    return CurveRow{std::move(method),
+                    geometry::mean_curvature(samples),
+                    geometry::max_curvature(samples),
+                    geometry::sampled_length(samples),
+                    s_curve_time(samples, settings.s_curve),
+                    geometry::bends_of(samples, kSeenBend),
+                    displacement};
   };
   geometry::NaseathOptions literal;
   literal.radius = radius;
   literal.repairs = geometry::NaseathRepairs::none();
+  literal.held_points = given.ring ? kHoldCurvature : 0;
   geometry::NaseathOptions repaired;
   repaired.radius = radius;
+  repaired.held_points = literal.held_points;
   geometry::TubeOptions tube;
   tube.radius = radius;
+  tube.held_points = literal.held_points;
   tube.feed = settings.s_curve.velocity;
   tube.acceleration = settings.s_curve.acceleration;
-  const auto seconds = [&](const BsplineCurve& made) { return row("", made).time; };
-  return {row("as it is", curve),
-          row("naseath-literal", geometry::smooth_naseath(curve, literal).curve),
-          row("naseath", geometry::smooth_naseath(curve, repaired).curve),
-          row("best in tube", geometry::best_in_tube(curve, tube, seconds).best.curve)};
+  const auto seconds = [&](const BsplineCurve& made) { return row("", made, 0).time; };
+  const auto smoothed = [&](std::string method, const geometry::NaseathOptions& options) {
+    const geometry::NaseathResult result = geometry::smooth_naseath(curve, options);
+    return row(std::move(method), result.curve, result.displacement);
+  };
+  const geometry::TubeCandidate best = geometry::best_in_tube(curve, tube, seconds).best;
+  return {row("as it is", curve, 0), smoothed("naseath-literal", literal),
+          smoothed("naseath", repaired), row("best in tube", best.curve, best.displacement)};
 }
 
 }  // namespace batten::postproc

@@ -10,6 +10,7 @@
 
 #include "geometry/basic/point.h"
 #include "geometry/basic/tolerance_kind.h"
+#include "geometry/chords/chord_proof.h"
 #include "geometry/path/bspline_curve.h"
 #include "postproc/machine/planner/feed_plan_path.h"
 #include "postproc/machine/planner/s_curve.h"
@@ -26,8 +27,8 @@ struct TableSettings {
   [[nodiscard]] static KinematicPathLimits ozcan_limits();
 };
 
-// A polyline, mm. Of a ring, whose last point is its first one, methods of corners round that
-// point, too.
+// A polyline, mm. A ring, whose last point is its first one, is run from the middle of its longest
+// side, so that this point is a corner as the others are.
 struct PolylineCase {
   std::vector<geometry::Point3> points;
   bool ring = false;
@@ -54,27 +55,44 @@ struct PolylineRow {
 [[nodiscard]] std::vector<PolylineRow> method_rows(const PolylineCase& given, double tolerance,
                                                    const TableSettings& settings);
 
+// Radians: a section of a curve that turns one way by less is not counted as a bend of it. A ripple
+// of a hundredth of a millimetre on ten millimetres turns by a few times as much.
+inline constexpr double kSeenBend = 1e-3;
+
+struct CurveCase {
+  geometry::BsplineCurve curve;
+  bool ring = false;
+};
+
 struct CurveRow {
   std::string method;
   double curvature = 0;  // 1/mm, mean over kNaseathSteps equal parameter steps in each span
   double greatest_curvature = 0;  // 1/mm, of these
   double length = 0;              // mm
   double time = 0;                // s, by the S-curve generator
+  std::size_t bends = 0;          // sections that turn one way, by kSeenBend or more (bends_of)
+  double displacement = 0;        // mm: |new(u) - old(u)| does not exceed it at any u
 };
 
 // The curve as it is, and in a tube of that radius (mm): Naseath's smoother as the thesis has it,
-// repaired, and the curve of the least time. Throws as best_in_tube does.
-[[nodiscard]] std::vector<CurveRow> tube_rows(const geometry::BsplineCurve& curve, double radius,
+// repaired, and the curve of the least time. The curves of a ring, which ends where it begins, stay
+// there with their tangent and curvature, so that they have no seam. Throws as best_in_tube does.
+[[nodiscard]] std::vector<CurveRow> tube_rows(const CurveCase& given, double radius,
                                               const TableSettings& settings);
 
 struct LinesRow {
   std::string method;     // as of --linearize
   std::size_t lines = 0;  // 0: none were found within a bounded effort
-  double length = 0;      // mm, of the lines
+  double length = 0;      // mm, of the lines and the jumps between them
   double deviation = 0;   // mm, the greatest distance of the curve from them, a proved bound
+  std::size_t jumps = 0;  // across the path, from one line to the next
+  double jumped = 0;      // mm, the length of the jumps
+  geometry::BesideCurve beside = {};  // of the lines
 };
 
-// The curve as lines by each way of laying them within a tolerance (mm). `first_step`: of the
+// The curve as lines by each way of laying them within a tolerance (mm), and as the tool path of
+// Hamdan 2005 along its tangents: `blca-tangents` before the correction of over- and undercut,
+// `blca-jumps` after it (geometry::tangent_lines). `first_step`: of the
 // parameter, with which ilca begins; 0: one step. Throws std::invalid_argument for a tolerance that
 // is not above 0.
 [[nodiscard]] std::vector<LinesRow> line_rows(const geometry::BsplineCurve& curve, double tolerance,

@@ -228,5 +228,27 @@ TEST(DisplacementBounds, HoldEverywhereAndAreTight) {
   }
 }
 
+// Whatever the spans are: the first and second derivatives agree where it begins and ends, and the
+// ring that begins a point later is the same curve.
+TEST(RingOf, HasNoSeamWhereverItBegins) {
+  const std::vector<double> breakpoints = {0, 1, 2.5, 3, 5, 5.5};
+  const std::vector<Point3> points = {{0, 0, 0}, {4, -1, 1}, {6, 3, 0}, {2, 6, -1}, {-2, 3, 2}};
+  const BsplineCurve ring = ring_of(breakpoints, points);
+  EXPECT_LE((ring.point_at(0) - ring.point_at(5.5)).norm(), 1e-14);
+  EXPECT_LE((ring.derivative_at(0, 1) - ring.derivative_at(5.5, 1)).norm(), 1e-12);
+  EXPECT_LE((ring.derivative_at(0, 2) - ring.derivative_at(5.5, 2)).norm(), 1e-12);
+  const BsplineCurve later =
+      ring_of({1, 2.5, 3, 5, 5.5, 6.5}, {points[1], points[2], points[3], points[4], points[0]});
+  for (int i = 0; i <= 50; ++i) {
+    const double u = 1 + 0.11 * i;
+    EXPECT_LE((later.point_at(u) - ring.point_at(u > 5.5 ? u - 5.5 : u)).norm(), 1e-13) << u;
+  }
+  // On even spans the curve begins at (P4 + 4 P0 + P1) / 6.
+  const BsplineCurve even = ring_of({0, 1, 2, 3, 4, 5}, points);
+  EXPECT_LE((even.point_at(0) - (points[4] + 4 * points[0] + points[1]) / 6).norm(), 1e-14);
+  EXPECT_THROW((void)ring_of({0, 1, 2, 3, 4}, points), std::invalid_argument);
+  EXPECT_THROW((void)ring_of({0, 1, 2, 2, 4, 5}, points), std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace batten::geometry

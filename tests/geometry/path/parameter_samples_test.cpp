@@ -5,6 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "tests/support/curve_of.h"
 #include "tests/support/knot_insertion.h"
 #include "tests/support/naseath_cases.h"
 
@@ -45,6 +46,25 @@ TEST(ParameterSamples, MeasureLengthAndBendingOfAParabola) {
 
 TEST(ParameterSamples, RefuseNoSteps) {
   EXPECT_THROW((void)parameter_samples(parabola(), 0), std::invalid_argument);
+}
+
+// A sine bends once between two zeros; bends of a thousandth of its height are too little to count.
+TEST(BendsOf, CountsSectionsThatTurnOneWay) {
+  constexpr int kHalves = 7;
+  const auto sine = [](double height) {
+    return curve_of([=](double x) { return Point3(x, height * std::sin(x), height * x * x); }, 0,
+                    kHalves * kPi, 40 * kHalves);
+  };
+  const auto flat = [](double height) {
+    return curve_of([=](double x) { return Point3(x, height * std::sin(x), 0); }, 0, kHalves * kPi,
+                    40 * kHalves);
+  };
+  EXPECT_EQ(bends_of(parameter_samples(flat(1), 20), 0.1), 7u);
+  // Each turns by twice the greatest slope.
+  EXPECT_EQ(bends_of(parameter_samples(flat(0.01), 20), 0.015), 7u);
+  EXPECT_EQ(bends_of(parameter_samples(flat(0.01), 20), 0.025), 0u);
+  // In a plane that rises, too: it turns about one axis all along where the rise is the greater.
+  EXPECT_EQ(bends_of(parameter_samples(sine(0.01), 20), 0.1), 1u);
 }
 
 }  // namespace

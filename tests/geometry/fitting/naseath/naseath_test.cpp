@@ -217,5 +217,34 @@ TEST(Naseath, RefusesWhatItCannotSmooth) {
   }
 }
 
+// A ring begins where its curve does, and what is held there keeps it without a seam, also where
+// its turns all agree, so that no group of them has an end of its own: an oval, and one with
+// ripples.
+TEST(NaseathRing, StaysWithoutASeam) {
+  for (const double ripple : {0.0, 0.04}) {
+    std::vector<Point3> points;
+    std::vector<double> breakpoints = {0};
+    for (int i = 0; i < 24; ++i) {
+      const double a = i * kPi / 12;
+      const double r = 1 + (i % 2 == 0 && i > 6 && i < 18 ? ripple : 0);
+      points.emplace_back(30 * r * std::cos(a), 20 * r * std::sin(a), 0);
+      breakpoints.push_back(i + 1);
+    }
+    const BsplineCurve ring = ring_of(breakpoints, points);
+    for (const NaseathOptions& options : {literal(0.25, 3), repaired(0.25, 3)}) {
+      const NaseathResult result = smooth_naseath(ring, options);
+      const BsplineCurve& made = result.curve;
+      EXPECT_LE((made.point_at(0) - ring.point_at(0)).norm(), 1e-12);
+      for (const int order : {0, 1, 2}) {
+        EXPECT_LE((made.derivative_at(0, order) - made.derivative_at(24, order)).norm(), 1e-9);
+      }
+      EXPECT_LE(result.displacement, 1.05 * options.radius);
+    }
+    const BsplineCurve made = smooth_naseath(ring, repaired(0.25, 3)).curve;
+    const double before = greatest_curvature(ring);
+    EXPECT_LE(greatest_curvature(made), (ripple > 0 ? 0.85 : 1 + 1e-9) * before);
+  }
+}
+
 }  // namespace
 }  // namespace batten::geometry
