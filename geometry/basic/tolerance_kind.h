@@ -1,4 +1,5 @@
-// The two readings of a tolerance. docs/tolerances.md
+// What a user says of a path and of one beside it: the two readings of a tolerance
+// (docs/tolerances.md), its side, its seam.
 #pragma once
 
 #include <numbers>
@@ -22,5 +23,9 @@ inline constexpr double kSharpestCut = 20 * std::numbers::pi / 180;
 
 // Of the way of travel, seen from above (against Z).
 enum class Side { kBoth, kLeft, kRight };
+
+// What becomes of a corner where a path begins and ends: it stays, or the path is rounded there,
+// too, but still goes through that point.
+enum class Seam { kCorner, kSmooth };
 
 }  // namespace batten::geometry

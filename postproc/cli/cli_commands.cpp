@@ -404,6 +404,7 @@ void read_smooth_options(SmoothingCommand& command, Arguments& in, bool by_marks
   if (const auto text = in.given.value("keep-corners")) {
     options.keep_corners_deg = read_decimal("keep-corners", *text, in);
   }
+  choose(options.seam, "seam", seams(), in);
   read_lambda_into(options.guo_lambda, in);
   read_integer_into(options.threads, "threads", in);
   options.allowed = in.given.values("allow");

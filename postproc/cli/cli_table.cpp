@@ -56,6 +56,9 @@ constexpr OptionRow kToleranceKind = setting(
 constexpr OptionRow kSide =
     setting("side", kValue, "both|left|right",
             "where the new path may be, seen along the way of travel from above", "both");
+constexpr OptionRow kSeam = setting(
+    "seam", kValue, "corner|smooth",
+    "the corner in which a closed path begins: it stays, or is rounded as others are", "corner");
 constexpr OptionRow kUnits =
     setting("units", kValue, "mm|inch", "units of a program that has no G20 or G21");
 constexpr OptionRow kSource = setting(
@@ -129,6 +132,7 @@ std::vector<OptionRow> smooth_rows() {
       setting("linearize", kValue, one_of<linearizations>(),
               "how lines are laid along a curve; default: chord, minlink with --prefer size"),
       setting("keep-corners", kValue, "DEG", "turns of more degrees than this stay corners"),
+      kSeam,
       kGuoLambda,
       kUnits,
       kSource,

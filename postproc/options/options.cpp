@@ -75,6 +75,12 @@ constexpr Choice<Side> kSides[] = {
     {Side::kRight, "right", "only on the right of the way of travel, seen from above"},
 };
 
+using geometry::Seam;
+constexpr Choice<Seam> kSeams[] = {
+    {Seam::kCorner, "corner", "a corner in which a closed path begins stays"},
+    {Seam::kSmooth, "smooth", "it is rounded as others are, through the point where it begins"},
+};
+
 using gcode::SourceKind;
 constexpr Choice<SourceKind> kSources[] = {
     {SourceKind::kAuto, "auto", "what the program's marks say; without any, as the target reads"},
@@ -185,6 +191,7 @@ std::span<const Choice<Prefer>> preferences() { return kPreferences; }
 std::span<const Choice<Linearize>> linearizations() { return kLinearizations; }
 std::span<const Choice<ToleranceKind>> tolerance_kinds() { return kToleranceKinds; }
 std::span<const Choice<Side>> sides() { return kSides; }
+std::span<const Choice<Seam>> seams() { return kSeams; }
 std::span<const Choice<SourceKind>> sources() { return kSources; }
 
 bool is_of_corners(Method method) {
@@ -211,6 +218,7 @@ std::string_view name_of(Linearize linearize) { return name_in(linearizations(),
 
 std::string_view name_of(ToleranceKind kind) { return name_in(tolerance_kinds(), kind); }
 std::string_view name_of(Side side) { return name_in(sides(), side); }
+std::string_view name_of(Seam seam) { return name_in(seams(), seam); }
 
 std::string_view name_of(gcode::Units units) {
   if (units == gcode::Units::kUnknown) return "unknown";
@@ -344,6 +352,9 @@ std::vector<std::string> problems_of(const SmoothOptions& options) {
   }
   std::ranges::move(problems_of_side(options.side, options.tolerance_kind),
                     std::back_inserter(problems));
+  if (options.seam == Seam::kSmooth && options.side != Side::kBoth) {
+    problems.emplace_back("--seam: smooth goes to both sides of the path, expected --side both");
+  }
   std::ranges::move(problems_of_decimals(options.decimals, options.source, options.target),
                     std::back_inserter(problems));
   std::ranges::move(problems_of_allowed(options.allowed), std::back_inserter(problems));

@@ -52,6 +52,7 @@ struct Choice {
 [[nodiscard]] std::span<const Choice<Linearize>> linearizations();
 [[nodiscard]] std::span<const Choice<geometry::ToleranceKind>> tolerance_kinds();
 [[nodiscard]] std::span<const Choice<geometry::Side>> sides();
+[[nodiscard]] std::span<const Choice<geometry::Seam>> seams();
 [[nodiscard]] std::span<const Choice<gcode::SourceKind>> sources();
 
 [[nodiscard]] std::string_view name_of(Form form);
@@ -60,6 +61,7 @@ struct Choice {
 [[nodiscard]] std::string_view name_of(Linearize linearize);
 [[nodiscard]] std::string_view name_of(geometry::ToleranceKind kind);
 [[nodiscard]] std::string_view name_of(geometry::Side side);
+[[nodiscard]] std::string_view name_of(geometry::Seam seam);
 [[nodiscard]] std::string_view name_of(gcode::Units units);  // "mm", "inch", "unknown"
 
 // Whether the method leaves the lines and puts a curve at each corner by itself: guo, ozcan,
@@ -85,10 +87,11 @@ struct SmoothOptions {
   Method method = Method::kBest;
   Form output = Form::kAuto;
   Prefer prefer = Prefer::kTime;
-  double guo_lambda = 0;                   // of guo-literal, see geometry::GuoOptions
-  std::optional<Linearize> linearize;      // nothing: what serves `prefer`, see linearize_of
-  std::optional<double> keep_corners_deg;  // turns above this stay corners
-  std::vector<std::string> allowed;        // --allow
+  double guo_lambda = 0;                          // of guo-literal, see geometry::GuoOptions
+  geometry::Seam seam = geometry::Seam::kCorner;  // of closed runs
+  std::optional<Linearize> linearize;             // nothing: what serves `prefer`, see linearize_of
+  std::optional<double> keep_corners_deg;         // turns above this stay corners
+  std::vector<std::string> allowed;               // --allow
   std::shared_ptr<const gcode::OwnWords> own_words;  // --word, and of a profile; nullptr: none
   std::shared_ptr<const gcode::Subprograms>
       subprograms;                // files of called programs, as they were read

@@ -50,7 +50,7 @@ Json json_of(const SmoothOptions& options, bool strict) {
   // An option that is added does not compile here: say it below, and where the library is to have
   // it, in Options of api/include/batten/batten.h and `inner` of api/batten.cpp.
   const auto& [target, machine, tolerance_mm, tolerance_inch, one_tolerance, tolerance_kind, side,
-               units, source, decimals, method, output, prefer, guo_lambda, linearize,
+               units, source, decimals, method, output, prefer, guo_lambda, seam, linearize,
                keep_corners_deg, allowed, own_words, subprograms, keep_expressions, convert, words,
                profile, threads, once_for_repeats, quick] = options;
   Json json = {
@@ -63,6 +63,7 @@ Json json_of(const SmoothOptions& options, bool strict) {
   json["output"] = name_of(output);
   json["prefer"] = name_of(prefer);
   if (guo_lambda != 0) json["guo_lambda"] = guo_lambda;
+  if (seam != geometry::Seam::kCorner) json["seam"] = name_of(seam);
   json["linearize"] = name_of(linearize_of(options));
   json["units"] = name_of(units);
   json["decimals"] = text_of(decimals);

@@ -104,6 +104,7 @@ class RunSmoother {
     request.limits = limits_of(*options().machine, greatest_feed(run()));
     request.jerk = options().machine->max_jerk();
     request.guo_lambda = options().guo_lambda;
+    request.seam = options().seam;
     request.scatter = std::min(arc_scatter(run()), kRun.arcs_spend * request.tolerance);
     return request;
   }

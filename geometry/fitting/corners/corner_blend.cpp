@@ -217,26 +217,93 @@ bool turns_more(const Corner& corner, double angle) {
   return std::atan2(in.cross(out).norm(), in.dot(out)) > angle;
 }
 
+namespace {
+
+// Without its shares.
+SharedCorner corner_at(std::size_t vertex, const Corner& corner, const CornerPathOptions& options) {
+  const bool sharp = turns_more(corner, std::numbers::pi - options.strict_sharper_than);
+  SharedCorner found{vertex, corner, NoBlend::kKept, sharp ? ToleranceKind::kPath : options.kind};
+  if (!turns_more(corner, options.keep_corner_angle)) found.frame = frame_of(corner);
+  return found;
+}
+
+bool may_have_blend(const SharedCorner& corner) {
+  return std::holds_alternative<CornerFrame>(corner.frame);
+}
+
+// The seam without its shares.
+std::optional<SharedCorner> rounded_seam(std::span<const Point3> q,
+                                         const CornerPathOptions& options) {
+  constexpr std::size_t kFewest = 4;  // a triangle
+  if (options.seam != Seam::kSmooth || q.size() < kFewest) return std::nullopt;
+  if ((q.front() - q.back()).norm() > kSamePlace) return std::nullopt;
+  SharedCorner seam = corner_at(0, {q[q.size() - 2], q[0], q[1]}, options);
+  if (!may_have_blend(seam)) return std::nullopt;
+  return seam;
+}
+
+// The part of a segment that the corner at one of its ends may use.
+double share_of(const Point3& a, const Point3& b, bool other_blends) {
+  return (a - b).norm() / (other_blends ? 2 : 1);
+}
+
+}  // namespace
+
 std::vector<SharedCorner> shared_corners(std::span<const Point3> distinct,
                                          const CornerPathOptions& options) {
   const auto& q = distinct;
   std::vector<SharedCorner> corners;
   std::vector<bool> blends(q.size(), false);
   for (std::size_t i = 1; i + 1 < q.size(); ++i) {
-    const Corner corner{q[i - 1], q[i], q[i + 1]};
-    const bool sharp = turns_more(corner, std::numbers::pi - options.strict_sharper_than);
-    corners.push_back({i, corner, NoBlend::kKept, sharp ? ToleranceKind::kPath : options.kind});
-    if (!turns_more(corner, options.keep_corner_angle)) corners.back().frame = frame_of(corner);
-    blends[i] = std::holds_alternative<CornerFrame>(corners.back().frame);
+    corners.push_back(corner_at(i, {q[i - 1], q[i], q[i + 1]}, options));
+    blends[i] = may_have_blend(corners.back());
   }
-  const auto share = [&](std::size_t vertex, std::size_t neighbour) {
-    return (q[vertex] - q[neighbour]).norm() / (blends[neighbour] ? 2 : 1);
-  };
+  if (rounded_seam(q, options)) blends.front() = blends.back() = true;
   for (SharedCorner& corner : corners) {
-    corner.share_before = share(corner.vertex, corner.vertex - 1);
-    corner.share_after = share(corner.vertex, corner.vertex + 1);
+    const std::size_t i = corner.vertex;
+    corner.share_before = share_of(q[i], q[i - 1], blends[i - 1]);
+    corner.share_after = share_of(q[i], q[i + 1], blends[i + 1]);
   }
   return corners;
+}
+
+std::optional<SharedCorner> shared_seam(std::span<const Point3> distinct,
+                                        const CornerPathOptions& options) {
+  const auto& q = distinct;
+  std::optional<SharedCorner> seam = rounded_seam(q, options);
+  if (!seam) return std::nullopt;
+  const std::size_t last = q.size() - 2;
+  const auto blends = [&](std::size_t i) {
+    return may_have_blend(corner_at(i, {q[i - 1], q[i], q[i + 1]}, options));
+  };
+  seam->share_before = share_of(q[0], q[last], blends(last));
+  seam->share_after = share_of(q[0], q[1], blends(1));
+  return seam;
+}
+
+std::optional<CornerBlend> seam_blend(const SharedCorner& seam, double tolerance) {
+  const auto* frame = std::get_if<CornerFrame>(&seam.frame);
+  if (frame == nullptr) return std::nullopt;
+  // With P2, P3, P4 about the middle knot the curve is at (P2 + 4 P3 + P4) / 6 there, which is the
+  // vertex. P1 and P0 are where the parameter is about even.
+  const auto curve_of = [&](double spacing) {
+    const Point3& q = frame->vertex;
+    const Vector3 a = spacing * frame->a;
+    const Vector3 b = spacing * frame->b;
+    constexpr double kSecond = 5.0 / 3;
+    return BsplineCurve(
+        BsplineBasis::clamped(3, {0, 1, 2, 3, 4}),
+        {q + 2 * a, q + kSecond * a, q + a, q - (a + b) / 4, q + b, q + kSecond * b, q + 2 * b});
+  };
+  // Its shape is the same for any spacing, so what it deviates goes with it.
+  const double share =
+      std::min({seam.share_before, seam.share_after, frame->length_a, frame->length_b}) / 2;
+  const double deviation = measure_deviation(curve_of(share), *frame, seam.kind);
+  const double spacing = deviation > tolerance ? share * tolerance / deviation : share;
+  if (!(spacing > kSamePlace)) return std::nullopt;
+  BsplineCurve curve = curve_of(spacing);
+  const BlendDeviation found = measure_blend(curve, *frame);
+  return CornerBlend{std::move(curve), found};
 }
 
 AlikeLegs alike_legs(const CornerFrame& frame) {
@@ -246,11 +313,13 @@ AlikeLegs alike_legs(const CornerFrame& frame) {
 }
 
 BlendedPath blended_path(std::span<const Point3> distinct,
-                         std::span<const std::optional<BsplineCurve>> blends) {
+                         std::span<const std::optional<BsplineCurve>> blends,
+                         const CornerBlend* seam) {
   const auto& q = distinct;
   if (q.size() < 2) return {};
   Chain chain(q[0], 0);
   double station = 0;
+  if (seam != nullptr) append_half(seam->curve, false, q[0], station, chain);
   for (std::size_t i = 1; i < q.size(); ++i) {
     station += (q[i] - q[i - 1]).norm();
     if (i + 1 == q.size()) break;
@@ -261,6 +330,7 @@ BlendedPath blended_path(std::span<const Point3> distinct,
       chain.line_to(q[i], station);
     }
   }
+  if (seam != nullptr) append_half(seam->curve, true, q.back(), station, chain);
   return std::move(chain).finish(q.back(), station);
 }
 

@@ -90,6 +90,7 @@ struct CornerPathOptions {
   double keep_corner_angle = 3.2;  // radians: vertices that turn more stay (> pi: none)
   // Radians between the legs: sharper corners are held to ToleranceKind::kPath.
   double strict_sharper_than = 0;
+  Seam seam = Seam::kCorner;  // of a path that ends where it begins
 };
 
 // The points that are apart from the one before them.
@@ -116,6 +117,18 @@ struct SharedCorner {
 // Those of the inner vertices. Linear cost.
 [[nodiscard]] std::vector<SharedCorner> shared_corners(std::span<const Point3> distinct,
                                                        const CornerPathOptions& options);
+
+// The corner where a path that ends where it begins has its seam, its leg that arrives being the
+// last one; nothing where it stays as it is.
+[[nodiscard]] std::optional<SharedCorner> shared_seam(std::span<const Point3> distinct,
+                                                      const CornerPathOptions& options);
+
+// A cubic through the vertex itself, as great as the tolerance and the lesser of the shares allow:
+// for a seam, where the path begins and ends. Its first and last three control points are on the
+// legs, so that it begins and ends with their direction and curvature 0; in the vertex, which is in
+// the middle of its parameters, it is square to the bisector, after a swing to the outside of the
+// leg. Knots 0 0 0 0 1 2 3 4 4 4 4.
+[[nodiscard]] std::optional<CornerBlend> seam_blend(const SharedCorner& seam, double tolerance);
 
 // Whether the legs turn by more than this (radians, 0 straight on, pi back).
 [[nodiscard]] bool turns_more(const Corner& corner, double angle);
@@ -144,9 +157,12 @@ struct BlendedPath {
 // `blends[i]` replaces vertex i; nothing: the vertex stays. Blends start and end on the segments
 // beside their vertex and do not overlap. The path starts in the first vertex and ends in the last.
 //
-// The middle of a blend's parameters is at the station of its vertex. Degree 3 or less.
+// The middle of a blend's parameters is at the station of its vertex. Degree 3 or less. `seam`:
+// that begins with its second half and ends with its first one; of a path that ends where it
+// begins.
 [[nodiscard]] BlendedPath blended_path(std::span<const Point3> distinct,
-                                       std::span<const std::optional<BsplineCurve>> blends);
+                                       std::span<const std::optional<BsplineCurve>> blends,
+                                       const CornerBlend* seam = nullptr);
 
 // What a method makes of a path: `Blend` has its curve in `blend.curve`.
 template <typename Blend>
@@ -155,8 +171,9 @@ struct CornerPath : BlendedPath {
     std::size_t vertex;  // index among the given points
     std::variant<Blend, NoBlend> outcome;
   };
-  std::vector<Corner> corners;  // in order of their vertices
-  int searched = 0;             // corners for which a blend was searched
+  std::vector<Corner> corners;      // in order of their vertices
+  std::optional<CornerBlend> seam;  // where the path begins and ends, if it is rounded there
+  int searched = 0;                 // corners for which a blend was searched
 
   // The path with these corners, which are those of the inner vertices.
   void round(const DistinctVertices& vertices) {
@@ -165,7 +182,7 @@ struct CornerPath : BlendedPath {
       const auto* blend = std::get_if<Blend>(&corners[i].outcome);
       if (blend != nullptr) blends[i + 1] = blend->blend.curve;
     }
-    BlendedPath::operator=(blended_path(vertices.points, blends));
+    BlendedPath::operator=(blended_path(vertices.points, blends, seam ? &*seam : nullptr));
   }
 };
 
@@ -182,6 +199,9 @@ template <typename Blend, typename BlendOf>
     path.corners.push_back({vertices.indices[each.vertex], NoBlend::kKept});
     path.corners.back().outcome =
         frame != nullptr ? blend_of(each, *frame) : std::get<NoBlend>(each.frame);
+  }
+  if (const auto seam = shared_seam(vertices.points, options)) {
+    path.seam = seam_blend(*seam, options.tolerance);
   }
   path.round(vertices);
   return path;

@@ -91,6 +91,7 @@ std::optional<SmoothCurve> as_one_curve(std::span<const Point3> run, const Path&
   SmoothCurve result{
       geometry::curve_of_pieces(path.pieces, path.stations), stations_of(run), 0, 0, 0, 0};
   result.vertex_parameters.back() = result.curve.last();
+  if (path.seam) result.deviation = geometry::deviation_of(path.seam->deviation, kind);
   for (const auto& corner : path.corners) {
     if (const auto* blend = std::get_if<Blend>(&corner.outcome)) {
       result.deviation =
@@ -114,6 +115,7 @@ Options corner_options(const CurveRequest& request, Options options = {}) {
   options.kind = request.kind;
   options.keep_corner_angle = request.keep_corner_angle;
   options.strict_sharper_than = geometry::kSharpestCut;
+  options.seam = request.seam;
   return options;
 }
 
@@ -141,6 +143,70 @@ std::optional<SmoothCurve> time_optimal_curve(std::span<const Point3> run,
   options.limits = request.limits;
   return as_one_curve<geometry::TimeOptimalPathBlend>(
       run, geometry::time_optimal_path(run, options), request.kind);
+}
+
+// The parameter between `from` and `to`, of a straight span that leads away from a point, where the
+// curve is so far (mm) from it.
+double parameter_at(const BsplineCurve& curve, double from, double to, const Point3& point,
+                    double distance) {
+  constexpr int kHalvings = 60;  // all of a double
+  for (int i = 0; i < kHalvings; ++i) {
+    const double middle = 0.5 * (from + to);
+    const bool is_before = (curve.point_at(middle) - point).norm() < distance;
+    (is_before ? from : to) = middle;
+  }
+  return 0.5 * (from + to);
+}
+
+// The same curve over other parameters, from `first` to `last`.
+BsplineCurve over(const BsplineCurve& curve, double first, double last) {
+  std::vector<double> knots = curve.basis().knots();
+  const double scale = (last - first) / (curve.last() - curve.first());
+  const auto from = curve.first();
+  const auto to = curve.last();
+  for (double& knot : knots) {
+    knot = knot <= from ? first : knot >= to ? last : first + scale * (knot - from);
+  }
+  return {geometry::BsplineBasis(curve.degree(), std::move(knots)), curve.control_points()};
+}
+
+// Rounds the corner where a closed curve begins and ends, in the room that the straight spans
+// beside it leave. Where there is none, or that corner is to stay, the curve stays as it is.
+void round_seam(SmoothCurve& path, const CurveRequest& request) {
+  const BsplineCurve& curve = path.curve;
+  const Point3 begin = curve.point_at(curve.first());
+  if ((curve.point_at(curve.last()) - begin).norm() > geometry::kSamePlace) return;
+  const auto lines = geometry::CurvePieces(curve, curve.first(), curve.last()).straight_runs();
+  if (lines.size() < 2 || lines.front().from > curve.first() || lines.back().to < curve.last()) {
+    return;
+  }
+  const Point3 after = curve.point_at(lines.front().to);
+  const Point3 before = curve.point_at(lines.back().from);
+  auto options = corner_options<geometry::CornerPathOptions>(request);
+  options.keep_corner_angle = std::min(request.keep_corner_angle, request.keep_found_corner);
+  auto seam = geometry::shared_seam(std::vector<Point3>{begin, after, before, begin}, options);
+  if (!seam) return;
+  // No corner's blend reaches into the straight spans.
+  seam->share_before = (begin - before).norm();
+  seam->share_after = (after - begin).norm();
+  const auto blend = geometry::seam_blend(*seam, options.tolerance);
+  if (!blend) return;
+  const BsplineCurve& round = blend->curve;
+  const double middle = 0.5 * (round.first() + round.last());
+  const double reach = (round.point_at(round.last()) - begin).norm();
+  const double from = parameter_at(curve, curve.first(), lines.front().to, begin, reach);
+  const double to = parameter_at(curve, curve.last(), lines.back().from, begin, reach);
+  if (!(from < to)) return;
+  const BsplineCurve parts[] = {over(round.part(middle, round.last()), curve.first(), from),
+                                curve.part(from, to),
+                                over(round.part(round.first(), middle), to, curve.last())};
+  const double deviation = geometry::deviation_of(blend->deviation, seam->kind);
+  path.curve = geometry::joined(parts);
+  path.deviation = std::max(path.deviation, deviation);
+  if (path.edge_deviations.empty()) return;
+  for (double* edge : {&path.edge_deviations.front(), &path.edge_deviations.back()}) {
+    *edge = std::max(*edge, deviation);
+  }
 }
 
 // --- Naseath's tube about a spline, for a run of lines
@@ -243,7 +309,7 @@ std::optional<SmoothCurve> naseath_curve(std::span<const Point3> run, const Curv
 std::optional<RunCurve> curve_of(Method method, std::span<const Point3> run,
                                  const CurveRequest& request) {
   if (request.side != geometry::Side::kBoth && method != Method::kFair) return std::nullopt;
-  const auto found = [&]() -> std::optional<SmoothCurve> {
+  auto found = [&]() -> std::optional<SmoothCurve> {
     switch (method) {
       case Method::kFair:
         return fair_curve(run, request);
@@ -269,7 +335,11 @@ std::optional<RunCurve> curve_of(Method method, std::span<const Point3> run,
                                 ", expected one that makes a curve");
   }();
   if (!found) return std::nullopt;
-  return RunCurve{method, *found};
+  // The methods of corners share the sides of a ring between its seam and the other corners.
+  if (request.seam == geometry::Seam::kSmooth && !is_of_corners(method)) {
+    round_seam(*found, request);
+  }
+  return RunCurve{method, *std::move(found)};
 }
 
 double greatest_curvature(std::span<const Point3> p) {

@@ -37,6 +37,7 @@ struct CurveRequest {
   bool accurate = false;                                  // see geometry::FairOptions
   bool near = true;                                       // the same
   double guo_lambda = 0;                                  // see geometry::GuoOptions
+  geometry::Seam seam = geometry::Seam::kCorner;          // of a closed run
 };
 
 [[nodiscard]] double greatest_feed(const Run& run);  // mm/min
@@ -45,8 +46,10 @@ struct CurveRequest {
 [[nodiscard]] geometry::KinematicLimits limits_of(const Machine& machine, double feed);
 
 // The ends of the run are met exactly. A closed run starts and ends in its seam vertex, where the
-// tool is put down and taken up; only `fair` has no corner there where the path has none. With the
-// methods of corners every vertex that is not kept gets a blend; the lines between stay.
+// tool is put down and taken up: there is no corner there where the path has none or, with
+// Seam::kSmooth, where it is one of two straight lines that may be rounded (geometry::seam_blend;
+// not with guo-literal). With the methods of corners every vertex that is not kept gets a blend;
+// the lines between stay.
 //
 // Nothing when the method finds no curve (`racing` where the machine limits neither acceleration
 // nor jerk of an axis), and with a side for all methods but `fair`; throws std::invalid_argument

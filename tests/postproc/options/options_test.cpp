@@ -78,6 +78,12 @@ TEST(Options, ThatAreWrongAreNamedWithWhatWasFound) {
       {"ToleranceBelowThePrintedDecimals", [](SmoothOptions& o) { o.tolerance_mm = 1e-9; },
        "decimals of target"},
       {"NoCorner", [](SmoothOptions& o) { o.keep_corners_deg = 0; }, "--keep-corners"},
+      {"SmoothSeamOnOneSide",
+       [](SmoothOptions& o) {
+         o.seam = geometry::Seam::kSmooth;
+         o.side = geometry::Side::kLeft;
+       },
+       "--seam"},
       {"RuleThatIsNeverLifted", [](SmoothOptions& o) { o.allowed = {"cutter-compensation"}; },
        "cannot be lifted"},
       {"TooManyThreads", [](SmoothOptions& o) { o.threads = 100000; }, "--threads"}};

@@ -369,6 +369,65 @@ BsplineCurve blend_between(const Point3& start, const Point3& vertex, const Poin
           {start, (start + 2 * vertex) / 3, (end + 2 * vertex) / 3, end}};
 }
 
+// Corners of 20 to 160 degrees, in space, their legs long and short: through the vertex, joined in
+// direction and curvature there and with the legs, and within the tolerance of them.
+TEST(SeamBlend, GoesThroughTheVertexWithoutACorner) {
+  for (const double turn : {20, 60, 90, 120, 160}) {
+    for (const double leg : {0.4, 40.0}) {
+      SCOPED_TRACE(testing::Message() << turn << " degrees, legs of " << leg << " mm");
+      const double a = turn * kPi / 180;
+      const std::vector<Point3> ring = {{0, 0, 0},
+                                        {leg, 0, 0},
+                                        {leg / 2, leg / 2, 5},
+                                        {-leg * std::cos(a), -leg * std::sin(a), 0},
+                                        {0, 0, 0}};
+      CornerPathOptions options;
+      options.tolerance = 0.05;
+      EXPECT_FALSE(shared_seam(ring, options));
+      options.seam = Seam::kSmooth;
+      const auto seam = shared_seam(ring, options);
+      ASSERT_TRUE(seam);
+      const auto blend = seam_blend(*seam, options.tolerance);
+      ASSERT_TRUE(blend);
+      const BsplineCurve& curve = blend->curve;
+      EXPECT_LE(curve.point_at(2).norm(), 1e-14);
+      EXPECT_LE(blend->deviation.in_order, options.tolerance * (1 + 1e-9));
+      EXPECT_LE(curve.point_at(0).norm(), seam->share_before + 1e-12);
+      if (leg > 1) {
+        EXPECT_NEAR(blend->deviation.in_order, options.tolerance, 1e-9);
+      }
+      EXPECT_NEAR(curve.curvature_at(0), 0, 1e-9);
+      EXPECT_NEAR(curve.curvature_at(4), 0, 1e-9);
+      EXPECT_LE((curve.direction_at(0) - Vector3(std::cos(a), std::sin(a), 0)).norm(), 1e-12);
+      EXPECT_LE((curve.direction_at(4) - Vector3(1, 0, 0)).norm(), 1e-12);
+      const Path legs = {Line{curve.point_at(0), {0, 0, 0}}, Line{{0, 0, 0}, curve.point_at(4)}};
+      const auto apart = compare_paths(legs, beziers_of(curve), 1.02 * options.tolerance);
+      EXPECT_EQ(apart.verdict, Verdict::kProved);
+    }
+  }
+}
+
+// With it every corner of a square is rounded, and no blend meets another one.
+TEST(GuoPathOfARing, HasNoCornerAtItsSeamWhereThatIsAsked) {
+  const std::vector<Point3> square = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 0}};
+  for (const double tolerance : {0.01, 0.5}) {
+    GuoOptions options = fair(tolerance, ToleranceKind::kPath);
+    options.seam = Seam::kSmooth;
+    const GuoPath path = guo_path(square, options);
+    ASSERT_TRUE(path.seam);
+    EXPECT_EQ(blends_of(path).size(), 3u);
+    EXPECT_EQ(start_point(path.pieces.front()), square.front());
+    EXPECT_EQ(end_point(path.pieces.back()), square.front());
+    for (std::size_t i = 0; i < path.pieces.size(); ++i) {
+      const PathPiece& next = path.pieces[(i + 1) % path.pieces.size()];
+      EXPECT_LE((direction_at(path.pieces[i], 1) - direction_at(next, 0)).norm(), 1e-9) << i;
+      EXPECT_NEAR(curvature_at(path.pieces[i], 1), curvature_at(next, 0), 1e-6) << i;
+    }
+    EXPECT_EQ(compare_paths(path_through(square), path.pieces, 1.02 * tolerance).verdict,
+              Verdict::kProved);
+  }
+}
+
 // Blends side by side make one path whose stations go forward, whatever noise their ends have: both
 // are to end in the middle of the leg from (10, 0) to (10, 10); the first one misses it backwards,
 // not at all, or too far.

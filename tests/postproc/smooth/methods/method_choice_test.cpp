@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "postproc/smooth/selection/selection.h"
+#include "tests/support/interpreted.h"
 #include "tests/support/machine_limits.h"
 #include "tests/support/method_cases.h"
 #include "tests/support/wavy_programs.h"
@@ -100,6 +102,46 @@ INSTANTIATE_TEST_SUITE_P(
         MethodOnProgram{Method::kGuo, "GuoOneCorner", corner_program, "grbl"},
         MethodOnProgram{Method::kTimeOptimal, "Racing", star_program, "grbl"}),
     [](const auto& test) { return test.param.name; });
+
+// A star that begins in one of its tips.
+std::string star_from_a_tip() {
+  std::vector<geometry::Point3> points = geometry::star_path();
+  points.erase(points.begin());
+  points.back() = points.front();
+  return program_through(points, 3000);
+}
+
+// Radians between the directions in which a written ring, level at Z0, arrives at its begin and
+// leaves it.
+double turn_at_seam(const std::string& text) {
+  const tests::Interpreted program(text);
+  geometry::Path level;
+  for (const gcode::Motion& motion : program.read.motions) {
+    const geometry::PathPiece piece = motion.piece;
+    const double end = geometry::end_point(piece).z();
+    if (geometry::start_point(piece).z() == 0 && end == 0) level.push_back(piece);
+  }
+  const geometry::Vector3 leaves = geometry::direction_at(level.front(), 0);
+  const geometry::Vector3 arrives = geometry::direction_at(level.back(), 1);
+  return std::atan2(arrives.cross(leaves).norm(), arrives.dot(leaves));
+}
+
+// The tip turns by 144 degrees; rounded, by no more than arcs of three decimals show.
+TEST(SmoothSeam, IsWrittenWithoutACornerWhereAClosedProgramBegins) {
+  const std::string before = star_from_a_tip();
+  SmoothOptions options = options_with(Method::kOzcan, "grbl");
+  const SmoothResult corner = smoothed(before, options);
+  EXPECT_EQ(rewritten_runs(corner), 1u);
+  EXPECT_GT(turn_at_seam(corner.text), 140 * geometry::kPi / 180);
+  options.seam = geometry::Seam::kSmooth;
+  const SmoothResult result = smoothed(before, options);
+  EXPECT_EQ(rewritten_runs(result), 1u);
+  EXPECT_LT(turn_at_seam(result.text), 5 * geometry::kPi / 180);
+  EXPECT_TRUE(result.proved);
+  EXPECT_TRUE(verdict(before, result.text, 0.05).proved());
+  EXPECT_LE(result.runs_after_s, result.runs_before_s);
+  expect_rest_copied(before, result);
+}
 
 // --- which one wins -----------------------------------------------------------------------------
 

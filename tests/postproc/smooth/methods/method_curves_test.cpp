@@ -138,6 +138,40 @@ TEST_P(EveryMethod, HasNoCornersOfItsOwn) {
   }
 }
 
+// A ring that begins in a corner. Asked for, the new path goes through that point with one
+// direction and one curvature; guo-literal leaves it, as its paper does.
+TEST_P(EveryMethod, RoundsTheSeamOfARingWhereThatIsAsked) {
+  const std::vector<Point3> square = {{0, 0, 0}, {30, 0, 0}, {30, 30, 0}, {0, 30, 0}, {0, 0, 0}};
+  for (const std::vector<Point3>& ring : {square, geometry::guo_hexagon()}) {
+    for (const bool asked : {false, true}) {
+      CurveRequest request = request_with(0.05);
+      if (asked) request.seam = geometry::Seam::kSmooth;
+      const auto made = curve(ring, request);
+      ASSERT_TRUE(made);
+      const geometry::BsplineCurve& c = made->path.curve;
+      EXPECT_LT((c.point_at(c.first()) - ring.front()).norm(), 1e-9);
+      EXPECT_LT((c.point_at(c.last()) - ring.front()).norm(), 1e-9);
+      const geometry::Path pieces = geometry::beziers_of(c);
+      const geometry::Vector3 leaves = geometry::direction_at(pieces.front(), 0);
+      const geometry::Vector3 arrives = geometry::direction_at(pieces.back(), 1);
+      const bool rounded = asked && GetParam().method != Method::kGuoLiteral;
+      EXPECT_EQ((leaves - arrives).norm() < 1e-9, rounded) << (leaves - arrives).norm();
+      if (rounded) {
+        const double bends = geometry::curvature_at(pieces.front(), 0);
+        EXPECT_NEAR(geometry::curvature_at(pieces.back(), 1), bends, 1e-6 * bends);
+        EXPECT_TRUE(geometry::CurvePieces(c, c.first(), c.last()).corners().empty());
+      }
+      EXPECT_LE(made->path.deviation, 0.05 * (1 + 1e-6));
+      const auto proof = geometry::compare_paths(geometry::path_through(ring), pieces, 1.03 * 0.05);
+      EXPECT_EQ(proof.verdict, geometry::Verdict::kProved) << proof.bounds.at_most;
+      request.keep_corner_angle = 0.5;
+      const auto kept = curve(ring, request);
+      ASSERT_TRUE(kept);
+      EXPECT_LT(kept->path.deviation, 1e-9) << "no corner is rounded";
+    }
+  }
+}
+
 TEST_P(EveryMethod, OfOnePlaceIsNothing) {
   const std::vector<Point3> points(3, Point3(1, 2, 3));
   EXPECT_FALSE(curve(points, request_with(0.01)));
