@@ -61,15 +61,11 @@ constexpr Column kPolylineColumns[] = {
     {"pieces", "pieces"},
 };
 constexpr Column kTubeColumns[] = {
-    {"mean_curvature_per_mm", "mean curv.", 4},
-    {"mean_curvature_less_percent", "less, %", 2},
-    {"greatest_curvature_per_mm", "greatest", 4},
-    {"bends", "bends"},
-    {"displacement_mm", "moved, mm", 4},
-    {"length_mm", "length, mm", 3},
-    {"length_less_percent", "less, %", 2},
-    {"mean_feed_mm_per_s", "mm/s", 1},
-    {"s_curve_time_s", "time, s", 3},
+    {"mean_curvature_per_mm", "mean curv.", 4},   {"mean_curvature_less_percent", "less, %", 2},
+    {"greatest_curvature_per_mm", "greatest", 4}, {"bends", "bends"},
+    {"displacement_mm", "moved, mm", 4},          {"length_mm", "length, mm", 3},
+    {"length_less_percent", "less, %", 2},        {"mean_feed_mm_per_s", "mm/s", 1},
+    {"sampled_feed_mm_per_s", "sampled", 1},      {"s_curve_time_s", "time, s", 3},
     {"s_curve_time_less_percent", "less, %", 2},
 };
 constexpr Column kLinesColumns[] = {
@@ -298,6 +294,7 @@ Json json_of(const CurveRow& row, const CurveRow& before, double radius) {
           {"length_mm", row.length},
           {"length_less_percent", less(row.length, before.length)},
           {"mean_feed_mm_per_s", row.length / row.time},
+          {"sampled_feed_mm_per_s", row.sampled_feed},
           {"s_curve_time_s", row.time},
           {"s_curve_time_less_percent", less(row.time, before.time)}};
 }

@@ -85,6 +85,68 @@ std::vector<SCurveNode> s_curve_nodes(std::span<const geometry::ParameterSample>
   return nodes;
 }
 
+namespace {
+
+// A change of speed from 0 to 1 in the time from 0 to 1, without acceleration at both ends: jerk in
+// the first and last part `ramp` (0 to 1/2) of the time, even acceleration between.
+class UnitChange {
+ public:
+  explicit UnitChange(double ramp) : ramp_(ramp) {}
+
+  [[nodiscard]] double speed(double t) const {
+    if (t > 0.5) return 1 - speed(1 - t);
+    if (t < ramp_) return t * t / (2 * ramp_ * (1 - ramp_));
+    return (t - ramp_ / 2) / (1 - ramp_);
+  }
+
+  [[nodiscard]] double distance(double t) const {
+    if (t > 0.5) return t - 0.5 + distance(1 - t);
+    if (t < ramp_) return t * t * t / (6 * ramp_ * (1 - ramp_));
+    const double even = t - ramp_ / 2;
+    return (even * even + ramp_ * ramp_ / 12) / (2 * (1 - ramp_));
+  }
+
+ private:
+  double ramp_;
+};
+
+// mm/s, so far (mm) after `from`; `distance` is at most that of `to`.
+double speed_between(const SCurveNode& from, const SCurveNode& to, double distance,
+                     const SCurveLimits& limits) {
+  const double change = to.velocity - from.velocity;
+  if (change == 0) return from.velocity;
+  const double ramp =
+      std::min(0.5, limits.acceleration / limits.jerk / s_curve_change(std::abs(change), limits));
+  const UnitChange unit(ramp);
+  // As a part of the time between the nodes, which the change takes whole.
+  const double time = 2 * (to.distance - from.distance) / (from.velocity + to.velocity);
+  double low = 0;
+  double high = 1;
+  constexpr int kHalvings = 50;
+  for (int i = 0; i < kHalvings; ++i) {
+    const double t = 0.5 * (low + high);
+    const double gone = time * (from.velocity * t + change * unit.distance(t));
+    (gone < distance ? low : high) = t;
+  }
+  return from.velocity + change * unit.speed(low);
+}
+
+}  // namespace
+
+double s_curve_sampled_feed(std::span<const geometry::ParameterSample> samples,
+                            const SCurveLimits& limits) {
+  if (samples.empty()) return 0;
+  const std::vector<SCurveNode> nodes = s_curve_nodes(samples, limits);
+  double sum = 0;
+  std::size_t next = 1;
+  for (const geometry::ParameterSample& sample : samples) {
+    while (next + 1 < nodes.size() && nodes[next].distance < sample.distance) ++next;
+    const SCurveNode& from = nodes[next - 1];
+    sum += speed_between(from, nodes[next], sample.distance - from.distance, limits);
+  }
+  return sum / static_cast<double>(samples.size());
+}
+
 double s_curve_time(std::span<const geometry::ParameterSample> samples,
                     const SCurveLimits& limits) {
   const std::vector<SCurveNode> nodes = s_curve_nodes(samples, limits);

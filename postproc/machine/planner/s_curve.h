@@ -36,4 +36,9 @@ struct SCurveNode {
 [[nodiscard]] double s_curve_time(std::span<const geometry::ParameterSample> samples,
                                   const SCurveLimits& limits);
 
+// mm/s: the mean of the speeds at the samples, each counted once: the "average feedrate" of table
+// 4-2. A short span weighs as much as a long one. 0 without samples.
+[[nodiscard]] double s_curve_sampled_feed(std::span<const geometry::ParameterSample> samples,
+                                          const SCurveLimits& limits);
+
 }  // namespace batten::postproc

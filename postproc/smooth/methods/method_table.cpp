@@ -214,6 +214,7 @@ std::vector<CurveRow> tube_rows(const CurveCase& given, double radius,
                     geometry::max_curvature(samples),
                     geometry::sampled_length(samples),
                     s_curve_time(samples, settings.s_curve),
+                    s_curve_sampled_feed(samples, settings.s_curve),
                     geometry::bends_of(samples, kSeenBend),
                     displacement};
   };

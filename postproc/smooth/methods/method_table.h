@@ -70,6 +70,7 @@ struct CurveRow {
   double greatest_curvature = 0;  // 1/mm, of these
   double length = 0;              // mm
   double time = 0;                // s, by the S-curve generator
+  double sampled_feed = 0;        // mm/s, mean of the same samples (s_curve_sampled_feed)
   std::size_t bends = 0;          // sections that turn one way, by kSeenBend or more (bends_of)
   double displacement = 0;        // mm: |new(u) - old(u)| does not exceed it at any u
 };

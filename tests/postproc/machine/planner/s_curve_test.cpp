@@ -46,6 +46,36 @@ INSTANTIATE_TEST_SUITE_P(NaseathTables, SCurveOriginal,
                          testing::Values("tc1", "tc2", "tc3", "tc5a", "tc5b", "tc6"),
                          [](const auto& test) { return test.param; });
 
+// From rest over 100 mm, at samples that are even in the distance: the mean of their speeds is the
+// integral of v^2 over the time, divided by the distance. With a change of 1 in the time 1 the
+// speed is 2 t^2 in the first half and 1 - 2 (1 - t)^2 in the second, so that the integral is
+// 23/60, and the distance 1/2.
+TEST(SCurveSampledFeed, IsTheMeanOfTheSpeedsAtTheSamples) {
+  constexpr int kSamples = 1000;
+  std::vector<geometry::ParameterSample> samples;
+  for (int i = 0; i <= kSamples; ++i) {
+    geometry::ParameterSample sample;
+    sample.distance = 100.0 * i / kSamples;
+    // Only at the start the curvature asks for rest.
+    sample.curvature = i == 0 ? 1e300 : 0;
+    samples.push_back(sample);
+  }
+  const SCurveLimits limits{.velocity = 400, .acceleration = 4000, .jerk = 20000};
+  const std::vector<SCurveNode> nodes = s_curve_nodes(samples, limits);
+  ASSERT_EQ(nodes.size(), 2u);
+  ASSERT_NEAR(nodes[0].velocity, 0, 1e-9);
+  EXPECT_NEAR(s_curve_sampled_feed(samples, limits), nodes[1].velocity * (23.0 / 60) / 0.5,
+              1e-3 * nodes[1].velocity);
+  // Without a limit of jerk the acceleration is even: v^2 grows with the distance, and the mean of
+  // its root is 2/3 of the greatest.
+  const SCurveLimits sudden{
+      .velocity = 400, .acceleration = 400, .jerk = std::numeric_limits<double>::infinity()};
+  const double reached = s_curve_nodes(samples, sudden)[1].velocity;
+  EXPECT_NEAR(reached, std::sqrt(2 * 400.0 * 100), 1e-6);
+  EXPECT_NEAR(s_curve_sampled_feed(samples, sudden), 2.0 / 3 * reached, 1e-3 * reached);
+  EXPECT_EQ(s_curve_sampled_feed({}, limits), 0);
+}
+
 constexpr double kRadii[] = {.025, .125, .25};
 
 struct SavedTime {
