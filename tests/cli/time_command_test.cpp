@@ -3,9 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <string>
+#include <vector>
 
 #include "batten_process.h"
 
@@ -70,9 +73,37 @@ TEST_F(TimeCommandLine, PlansByTheLimitsOfTheAxes) {
   EXPECT_GT(seconds("s-curve"), 1.04 * seconds("jerk"));
   const ProcessResult said = expect_exit(time("--machine high-speed --planner jerk"), 0);
   EXPECT_TRUE(contains(said.out, "on high-speed, planner jerk:")) << said.out;
-  expect_exit(time("--machine high-speed --planner jerk --profile p.csv"), 1,
-              {"--profile: it is of the control's model"});
   expect_exit(time("--machine high-speed --planner fast"), 1, {"--planner"});
+}
+
+// The samples of a plan end where it does, a period later at the most, and meet the feed.
+TEST_F(TimeCommandLine, WritesAProfileOfAPlan) {
+  for (const std::string planner : {"jerk", "s-curve"}) {
+    SCOPED_TRACE(planner);
+    expect_exit(time("--machine high-speed --from 0,0,0 --force --json part.json --profile part.csv"
+                     " --planner " +
+                     planner),
+                0);
+    std::istringstream csv(folder_.text_of("part.csv"));
+    std::string line;
+    double last = 0;
+    double fastest_cut = 0;
+    double steepest = 0;
+    for (std::getline(csv, line); std::getline(csv, line);) {
+      std::istringstream row(line);
+      std::vector<double> cells;
+      for (std::string cell; std::getline(row, cell, ',');) cells.push_back(std::stod(cell));
+      last = cells[0];
+      if (cells[1] == 3) fastest_cut = std::max(fastest_cut, cells[5]);
+      steepest = std::max(steepest, std::abs(cells[9]));
+    }
+    const auto json = nlohmann::json::parse(folder_.text_of("part.json"));
+    const double seconds = json.at("time_s");
+    EXPECT_GE(last, seconds - 1e-6);
+    EXPECT_LE(last, seconds + 0.001 + 1e-6);
+    EXPECT_NEAR(fastest_cut, 6000, 1);
+    EXPECT_NEAR(steepest, 100000, 500);
+  }
 }
 
 // A zigzag of 1 mm steps that turns by 90 degrees: the machine brakes in each corner.

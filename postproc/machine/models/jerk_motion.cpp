@@ -273,6 +273,13 @@ JerkMotion::JerkMotion(std::span<const VelocityStretch> chain, std::span<const d
   }
 }
 
+JerkMotion::JerkMotion(std::vector<JerkPhase> phases) : phases_(std::move(phases)) {
+  if (phases_.empty()) return;
+  const JerkPhase& last = phases_.back();
+  duration_ = last.start + last.duration;
+  way_ = last.way + way_in(last, last.duration);
+}
+
 void JerkMotion::add_phase(double duration, double acceleration, double jerk) {
   if (!(duration > 0)) return;
   const JerkPhase phase{duration_, duration, way_, velocity_, acceleration, jerk};

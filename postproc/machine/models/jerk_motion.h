@@ -28,6 +28,9 @@ class JerkMotion {
   JerkMotion(std::span<const VelocityStretch> chain, std::span<const double> velocities,
              const ProfileRules& rules);
 
+  // Phases that follow each other.
+  explicit JerkMotion(std::vector<JerkPhase> phases);
+
   [[nodiscard]] double duration() const { return duration_; }  // s
 
   // mm from the start of the chain, and mm/s, at a time from 0 to the duration.

@@ -42,6 +42,18 @@ Vector3 axis_accelerations(const Machine& machine) {
 
 Vector3 axis_jerks(const Machine& machine) { return of_xyz(machine, &AxisLimits::jerk); }
 
+KinematicPathLimits kinematic_limits(const Machine& machine, double feed, bool rapid) {
+  KinematicPathLimits limits;
+  limits.feed = std::min(feed / kMinute, machine.path_feed);
+  limits.speed = axis_velocities(machine, rapid);
+  limits.acceleration = axis_accelerations(machine);
+  limits.jerk = axis_jerks(machine);
+  limits.tangential_acceleration = machine.path_acceleration;
+  limits.tangential_jerk = machine.path_jerk;
+  limits.period = machine.servo_period;
+  return limits;
+}
+
 double limit_along(const Vector3& direction, const Vector3& limits) {
   const double limit = least_ratio(limits, direction);
   return limit < kNoLimit ? limit : limits.minCoeff();

@@ -4,6 +4,7 @@
 #include "geometry/basic/point.h"
 #include "geometry/path/path.h"
 #include "postproc/machine/machine.h"
+#include "postproc/machine/planner/feed_plan_path.h"
 
 namespace batten::postproc {
 
@@ -11,6 +12,9 @@ namespace batten::postproc {
 [[nodiscard]] geometry::Vector3 axis_velocities(const Machine& machine, bool rapid);  // mm/s
 [[nodiscard]] geometry::Vector3 axis_accelerations(const Machine& machine);           // mm/s^2
 [[nodiscard]] geometry::Vector3 axis_jerks(const Machine& machine);  // mm/s^3, may be infinite
+
+// What a plan of these axes keeps at a feed (mm/min).
+[[nodiscard]] KinematicPathLimits kinematic_limits(const Machine& machine, double feed, bool rapid);
 
 // The greatest length of a vector along the unit vector `direction` none of whose components
 // is above its axis' limit.
