@@ -79,6 +79,22 @@ double limit_on(const geometry::PathPiece& piece, const Vector3& limits) {
   return limit_across(arc->axis, limits);
 }
 
+double mean_limit_on(const geometry::PathPiece& piece, const Vector3& limits) {
+  if (std::holds_alternative<geometry::Line>(piece)) return limit_on(piece, limits);
+  if (std::isinf(limits.minCoeff())) return limits.minCoeff();
+  constexpr double kApart = 0.4;  // radians
+  constexpr int kMost = 8;
+  const auto* arc = std::get_if<geometry::Arc>(&piece);
+  const int places =
+      arc == nullptr ? kMost
+                     : std::clamp(static_cast<int>(std::abs(arc->sweep) / kApart) + 1, 1, kMost);
+  double sum = 0;
+  for (int i = 0; i < places; ++i) {
+    sum += 1 / limit_along(geometry::direction_at(piece, (i + 0.5) / places), limits);
+  }
+  return places / sum;
+}
+
 double greatest_curvature(const geometry::PathPiece& piece) {
   double most = 0;
   for (const double t : {0.0, 0.5, 1.0}) most = std::max(most, geometry::curvature_at(piece, t));

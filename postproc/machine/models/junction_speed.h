@@ -28,6 +28,10 @@ namespace batten::postproc {
 // of a flat arc, otherwise any.
 [[nodiscard]] double limit_on(const geometry::PathPiece& piece, const geometry::Vector3& limits);
 
+// The harmonic mean of what the directions along the piece allow.
+[[nodiscard]] double mean_limit_on(const geometry::PathPiece& piece,
+                                   const geometry::Vector3& limits);
+
 // 1/mm, of its ends and its middle.
 [[nodiscard]] double greatest_curvature(const geometry::PathPiece& piece);
 
