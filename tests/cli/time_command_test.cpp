@@ -115,6 +115,31 @@ std::string zigzag() {
   return text + "G0 X50 Y50\nM2\n";
 }
 
+// On a machine with limits on jerk both commands estimate what the plan takes.
+TEST_F(TimeCommandLine, TellsTheSecondsOfSmoothWhichAreThoseOfThePlan) {
+  std::string row = "G21 G90 G17 G94\nG0 X0 Y0 Z0\nG1 F3000\n";
+  for (int i = 1; i <= 100; ++i) {
+    const double x = 0.5 * i;
+    row += "X" + std::to_string(x) + " Y" + std::to_string(3 * std::sin(x / 4)) + "\n";
+  }
+  folder_.put("row.nc", row + "G0 Z5\nM2\n");
+  const std::string machine = " --target linuxcnc --machine high-speed --json - ";
+  const auto json = [&](const std::string& command) {
+    return nlohmann::json::parse(expect_exit(folder_.batten(command), 0).out);
+  };
+  const auto seconds = [&](const std::string& file, const std::string& planner) -> double {
+    return json("time " + file + machine + "--planner " + planner).at("time_s");
+  };
+  const auto smoothed = json("smooth row.nc -o new.nc --tolerance 0.01" + machine);
+  const double before = smoothed.at("time_before_s");
+  const double after = smoothed.at("time_after_s");
+  EXPECT_NEAR(seconds("row.nc", "control"), before, 1e-9);
+  EXPECT_NEAR(seconds("new.nc", "control"), after, 1e-9);
+  EXPECT_NEAR(seconds("row.nc", "jerk"), before, 0.01 * before);
+  EXPECT_NEAR(seconds("new.nc", "jerk"), after, 0.01 * after);
+  EXPECT_LT(after, 0.9 * before);
+}
+
 TEST_F(TimeCommandLine, TellsWhatIsLeftToWin) {
   folder_.put("zigzag.nc", zigzag());
   const auto bounds = [&](const std::string& more) {
