@@ -1,6 +1,6 @@
-// The speed along a chain of stretches when the acceleration along the path cannot jump: the changes
-// of speed that the profile without a limit on jerk makes become S-curves.
-// Method: docs/algorithms/cycle_time.md.
+// The speed along a chain of stretches when the acceleration along the path cannot jump: the
+// changes of speed that the profile without a limit on jerk makes become S-curves. Method:
+// docs/algorithms/cycle_time.md.
 #pragma once
 
 #include <span>
@@ -22,9 +22,9 @@ struct JerkPhase {
 
 class JerkMotion {
  public:
-  // `velocities` are those of joint_velocities(chain, rules). Of the stretches that a change of speed
-  // runs over, the least jerk counts; where it runs through levels that it could not hold, their
-  // mean. In bends a part of the jerk turns the acceleration.
+  // `velocities` are those of joint_velocities(chain, rules). Of the stretches that a change of
+  // speed runs over, the least jerk counts; where it runs through levels that it could not hold,
+  // their mean. In bends a part of the jerk turns the acceleration.
   JerkMotion(std::span<const VelocityStretch> chain, std::span<const double> velocities,
              const ProfileRules& rules);
 
