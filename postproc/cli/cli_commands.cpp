@@ -689,10 +689,6 @@ TimeCommand time_command(Arguments& in) {
   static constexpr std::array kPlanners = {
       choice(FeedPlanner::kControl), choice(FeedPlanner::kJerk), choice(FeedPlanner::kSCurve)};
   choose(command.planner, "planner", std::span<const Choice<FeedPlanner>>(kPlanners), in);
-  if (command.planner != FeedPlanner::kControl && !command.profile_file.empty()) {
-    in.complain("--profile: it is of the control's model, not of --planner {}",
-                name_of(command.planner));
-  }
   command.bound = in.given.has("bound");
   std::optional<double> inch;
   command.tolerance_mm = tolerance_in(in.given.value("tolerance"), in, inch);

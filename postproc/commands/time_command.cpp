@@ -50,7 +50,9 @@ int write_profile(const TimeCommand& command, const ProgramSteps& steps) {
       text.clear();
       return written;
     };
-    if (sample_program(steps, *command.machine, kProfilePeriod, take)) (void)write(text);
+    if (sample_program(steps, *command.machine, kProfilePeriod, take, command.planner)) {
+      (void)write(text);
+    }
   };
   return write({.target = command.profile_file, .replace_existing = command.force, .parts = parts});
 }

@@ -17,7 +17,7 @@ namespace batten::postproc {
 
 // How the control runs blocks; see docs/controllers/ for the rules of each.
 enum class ControllerModel {
-  kLookAhead,  // any control: junction speed by acceleration, block rate, no jerk
+  kLookAhead,  // any control: junction speed by acceleration, block rate; limits on jerk
   kLinuxcnc,  // one segment per servo period, half tangential acceleration on arcs, blending within
               // P
   kGrbl,     // junction deviation, a planner of 16 blocks, trapezoids; ends on whole steps, arcs in

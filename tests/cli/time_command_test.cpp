@@ -3,9 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <string>
+#include <vector>
 
 #include "batten_process.h"
 
@@ -70,9 +73,37 @@ TEST_F(TimeCommandLine, PlansByTheLimitsOfTheAxes) {
   EXPECT_GT(seconds("s-curve"), 1.04 * seconds("jerk"));
   const ProcessResult said = expect_exit(time("--machine high-speed --planner jerk"), 0);
   EXPECT_TRUE(contains(said.out, "on high-speed, planner jerk:")) << said.out;
-  expect_exit(time("--machine high-speed --planner jerk --profile p.csv"), 1,
-              {"--profile: it is of the control's model"});
   expect_exit(time("--machine high-speed --planner fast"), 1, {"--planner"});
+}
+
+// The samples of a plan end where it does, a period later at the most, and meet the feed.
+TEST_F(TimeCommandLine, WritesAProfileOfAPlan) {
+  for (const std::string planner : {"jerk", "s-curve"}) {
+    SCOPED_TRACE(planner);
+    expect_exit(time("--machine high-speed --from 0,0,0 --force --json part.json --profile part.csv"
+                     " --planner " +
+                     planner),
+                0);
+    std::istringstream csv(folder_.text_of("part.csv"));
+    std::string line;
+    double last = 0;
+    double fastest_cut = 0;
+    double steepest = 0;
+    for (std::getline(csv, line); std::getline(csv, line);) {
+      std::istringstream row(line);
+      std::vector<double> cells;
+      for (std::string cell; std::getline(row, cell, ',');) cells.push_back(std::stod(cell));
+      last = cells[0];
+      if (cells[1] == 3) fastest_cut = std::max(fastest_cut, cells[5]);
+      steepest = std::max(steepest, std::abs(cells[9]));
+    }
+    const auto json = nlohmann::json::parse(folder_.text_of("part.json"));
+    const double seconds = json.at("time_s");
+    EXPECT_GE(last, seconds - 1e-6);
+    EXPECT_LE(last, seconds + 0.001 + 1e-6);
+    EXPECT_NEAR(fastest_cut, 6000, 1);
+    EXPECT_NEAR(steepest, 100000, 500);
+  }
 }
 
 // A zigzag of 1 mm steps that turns by 90 degrees: the machine brakes in each corner.
@@ -82,6 +113,31 @@ std::string zigzag() {
     text += "X" + std::to_string(0.7 * i) + " Y" + (i % 2 == 1 ? "0.7" : "0") + "\n";
   }
   return text + "G0 X50 Y50\nM2\n";
+}
+
+// On a machine with limits on jerk both commands estimate what the plan takes.
+TEST_F(TimeCommandLine, TellsTheSecondsOfSmoothWhichAreThoseOfThePlan) {
+  std::string row = "G21 G90 G17 G94\nG0 X0 Y0 Z0\nG1 F3000\n";
+  for (int i = 1; i <= 100; ++i) {
+    const double x = 0.5 * i;
+    row += "X" + std::to_string(x) + " Y" + std::to_string(3 * std::sin(x / 4)) + "\n";
+  }
+  folder_.put("row.nc", row + "G0 Z5\nM2\n");
+  const std::string machine = " --target linuxcnc --machine high-speed --json - ";
+  const auto json = [&](const std::string& command) {
+    return nlohmann::json::parse(expect_exit(folder_.batten(command), 0).out);
+  };
+  const auto seconds = [&](const std::string& file, const std::string& planner) -> double {
+    return json("time " + file + machine + "--planner " + planner).at("time_s");
+  };
+  const auto smoothed = json("smooth row.nc -o new.nc --tolerance 0.01" + machine);
+  const double before = smoothed.at("time_before_s");
+  const double after = smoothed.at("time_after_s");
+  EXPECT_NEAR(seconds("row.nc", "control"), before, 1e-9);
+  EXPECT_NEAR(seconds("new.nc", "control"), after, 1e-9);
+  EXPECT_NEAR(seconds("row.nc", "jerk"), before, 0.01 * before);
+  EXPECT_NEAR(seconds("new.nc", "jerk"), after, 0.01 * after);
+  EXPECT_LT(after, 0.9 * before);
 }
 
 TEST_F(TimeCommandLine, TellsWhatIsLeftToWin) {

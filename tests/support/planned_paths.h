@@ -60,9 +60,10 @@ struct Use {
 
 // The greatest share of any limit that samples of the plan use.
 inline Use greatest_use(std::span<const geometry::PathPiece> path, const FeedPlan& plan,
-                        const KinematicPathLimits& limits, double period) {
+                        LimitsOfPieces limits_of_pieces, double period) {
   Use use;
-  for (const MotionSample& m : sample_motion(path, plan, period)) {
+  for_each_sample(path, plan, period, [&](const MotionSample& m) {
+    const KinematicPathLimits& limits = limits_of(limits_of_pieces, m.piece);
     const auto see = [&](double share, const char* name) {
       if (share <= use.share) return;
       use = {share, std::string(name) + " at " + std::to_string(m.time) + " s"};
@@ -78,8 +79,13 @@ inline Use greatest_use(std::span<const geometry::PathPiece> path, const FeedPla
     const double along = m.tangential_acceleration;
     const double across = std::sqrt(std::max(0.0, m.acceleration.squaredNorm() - along * along));
     see(across / limits.normal_acceleration, "normal acceleration");
-  }
+  });
   return use;
+}
+
+inline Use greatest_use(std::span<const geometry::PathPiece> path, const FeedPlan& plan,
+                        const KinematicPathLimits& limits, double period) {
+  return greatest_use(path, plan, LimitsOfPieces(&limits, 1), period);
 }
 
 // A cubic B-spline through nowhere in particular, of 5 to 14 control points, flat or in space.

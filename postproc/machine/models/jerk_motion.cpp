@@ -25,6 +25,7 @@ struct SpeedChange {
   double way = 0;           // mm
   double acceleration = 0;  // mm/s^2, the even one that costs as much time
   double jerk = 0;          // mm/s^3 that it may have; infinite: no limit
+  double turn = 0;          // radians, of the bends of its way
 };
 
 // A speed that is held over some way: on a plateau, or for an instant where the speed is greatest
@@ -33,6 +34,8 @@ struct SpeedLevel {
   double velocity = 0;  // mm/s
   double way = 0;       // mm
   SpeedChange after;    // to the next level; none after the last one
+  double held = 0;      // mm: the way without those of changes
+  double turn = 0;      // radians, of its bends
 };
 
 // Seconds of the S-curve between two speeds under a limit of acceleration and one of jerk.
@@ -48,13 +51,15 @@ class LevelBuilder {
     levels_.push_back({});
   }
 
-  void add(const MotionPhase& phase, double jerk) {
+  void add(const MotionPhase& phase, const VelocityStretch& stretch) {
     const double end = phase.velocity + phase.acceleration * phase.duration;
     const double way = phase.length;
     const double change = end - phase.velocity;
     if (std::abs(change) <= kSameSpeed * std::max(end, phase.velocity)) {
       close_change(phase.velocity);
       levels_.back().way += way;
+      levels_.back().held += way;
+      levels_.back().turn += stretch.curvature * way;
       return;
     }
     if (changing_ && (change > 0) != rises_) close_change(phase.velocity);
@@ -63,7 +68,8 @@ class LevelBuilder {
     changing_ = true;
     change_.way += way;
     time_ += phase.duration;
-    change_.jerk = std::min(change_.jerk, jerk);
+    change_.jerk = std::min(change_.jerk, stretch.jerk);
+    change_.turn += stretch.curvature * way;
     end_ = end;
   }
 
@@ -75,7 +81,7 @@ class LevelBuilder {
     change_.acceleration = even_acceleration();
     levels_.back().after = change_;
     levels_.push_back({velocity, 0, {}});
-    change_ = {0, 0, kNoLimit};
+    change_ = {0, 0, kNoLimit, 0};
     time_ = 0;
     changing_ = false;
   }
@@ -89,7 +95,7 @@ class LevelBuilder {
   }
 
   std::vector<SpeedLevel>& levels_;
-  SpeedChange change_{0, 0, kNoLimit};
+  SpeedChange change_{0, 0, kNoLimit, 0};
   double start_ = 0;
   double end_ = 0;
   double time_ = 0;
@@ -97,8 +103,46 @@ class LevelBuilder {
   bool rises_ = false;
 };
 
-double s_ramp_way(double from, double to, const SpeedChange& change) {
-  return (from + to) / 2 * s_ramp_time(std::abs(to - from), change.acceleration, change.jerk);
+// In a bend of curvature k an acceleration along the path, a, turns the normal one by 3 k v a more
+// than at steady speed; this shares the limit on jerk with that of a itself.
+constexpr double kTurningShare = 0.6;
+
+// Between a level and a faster one: the S-curve goes on where the change without a limit on jerk
+// has ended, into the way of the faster level.
+double acceleration_of(const SpeedLevel& slower, double velocity, const SpeedLevel& faster,
+                       const SpeedChange& change) {
+  const double mean = (slower.velocity + velocity) / 2;
+  const double way =
+      mean * s_ramp_time(velocity - slower.velocity, change.acceleration, change.jerk);
+  const double beyond = std::max(0.0, way - change.way);
+  const double bend_beyond = faster.held > 0 ? faster.turn / faster.held : change.turn / change.way;
+  const double turn = change.turn + bend_beyond * beyond;
+  if (!(turn > 0)) return change.acceleration;
+  const double bend = turn / (change.way + beyond);
+  return std::min(change.acceleration, kTurningShare * change.jerk / (3 * bend * mean));
+}
+
+double s_ramp_way(const SpeedLevel& slower, double velocity, const SpeedLevel& faster,
+                  const SpeedChange& change) {
+  return (slower.velocity + velocity) / 2 *
+         s_ramp_time(velocity - slower.velocity, acceleration_of(slower, velocity, faster, change),
+                     change.jerk);
+}
+
+// Two changes that follow each other as one; `first` and `second`: by how much the speed changes.
+SpeedChange joined(const SpeedChange& a, double first, const SpeedChange& b, double second) {
+  const double way = a.way + b.way;
+  const double part = way > 0 ? a.way / way : 0.5;
+  const auto mean = [part](double x, double y) { return part * x + (1 - part) * y; };
+  return {way, (first + second) / (first / a.acceleration + second / b.acceleration),
+          mean(a.jerk, b.jerk), a.turn + b.turn};
+}
+
+// Of the change after `level`.
+double acceleration_between(const SpeedLevel& level, const SpeedLevel& next) {
+  const bool rises = next.velocity > level.velocity;
+  const SpeedLevel& faster = rises ? next : level;
+  return acceleration_of(rises ? level : next, faster.velocity, faster, level.after);
 }
 
 // Levels as a list in which one can vanish. The way of a change belongs to its faster level.
@@ -141,7 +185,7 @@ class LevelList {
     double way = 0;
     for (const std::size_t neighbour : {before_[level], after_[level]}) {
       if (neighbour == kNone || levels_[neighbour].velocity >= velocity) continue;
-      way += s_ramp_way(levels_[neighbour].velocity, velocity, change(level, neighbour));
+      way += s_ramp_way(levels_[neighbour], velocity, levels_[level], change(level, neighbour));
     }
     return way;
   }
@@ -149,6 +193,11 @@ class LevelList {
   void fit(std::size_t level) {
     SpeedLevel& own = levels_[level];
     if (need(level, own.velocity) <= own.way) return;
+    for (const std::size_t neighbour : {before_[level], after_[level]}) {
+      if (neighbour != kNone && levels_[neighbour].velocity > own.velocity) {
+        return run_through(level, neighbour);
+      }
+    }
     double floor = 0;
     std::size_t nearest = kNone;  // the fastest of the slower neighbours
     for (const std::size_t neighbour : {before_[level], after_[level]}) {
@@ -168,9 +217,30 @@ class LevelList {
     ask_faster_neighbours(level);
   }
 
+  // A level half way up or down is not held but run through: where its S-curve does not end in
+  // time, one of the whole change is no faster there.
+  void run_through(std::size_t level, std::size_t faster) {
+    const bool rises = faster > level;
+    const std::size_t slower = rises ? before_[level] : after_[level];
+    const SpeedChange& from = change(slower, level);
+    const SpeedChange& to = change(level, faster);
+    SpeedChange whole = joined(from, levels_[level].velocity - levels_[slower].velocity, to,
+                               levels_[faster].velocity - levels_[level].velocity);
+    whole.way += levels_[level].held;
+    whole.turn += levels_[level].turn;
+    levels_[std::min(slower, faster)].after = whole;
+    levels_[faster].way += levels_[level].way;
+    (rises ? after_ : before_)[slower] = faster;
+    (rises ? before_ : after_)[faster] = slower;
+    gone_[level] = true;
+    ask(faster);
+  }
+
   // Not even the speed of its neighbour is reached: the level is a part of the neighbour's way.
   void join(std::size_t level, std::size_t into) {
     levels_[into].way += levels_[level].way;
+    levels_[into].held += levels_[level].held;
+    levels_[into].turn += levels_[level].turn;
     const bool before = into < level;
     const std::size_t other = before ? after_[level] : before_[level];
     // The change on the far side is that of the level that stays.
@@ -203,7 +273,7 @@ class LevelList {
       SpeedLevel level = levels_[i];
       level.way = std::max(0.0, level.way - need(i, level.velocity));
       if (after_[i] != kNone) {
-        level.after.way = s_ramp_way(level.velocity, levels_[after_[i]].velocity, level.after);
+        level.after.acceleration = acceleration_between(level, levels_[after_[i]]);
       }
       left.push_back(level);
     }
@@ -225,7 +295,7 @@ std::vector<SpeedLevel> speed_levels(std::span<const VelocityStretch> chain,
   LevelBuilder builder(levels);
   for (std::size_t i = 0; i < chain.size(); ++i) {
     const StretchMotion motion(chain[i], velocities[i], velocities[i + 1], rules);
-    for (const MotionPhase& phase : motion.phases()) builder.add(phase, chain[i].jerk);
+    for (const MotionPhase& phase : motion.phases()) builder.add(phase, chain[i]);
   }
   builder.finish();
   return levels;
@@ -271,6 +341,13 @@ JerkMotion::JerkMotion(std::span<const VelocityStretch> chain, std::span<const d
                  level.after.jerk);
     }
   }
+}
+
+JerkMotion::JerkMotion(std::vector<JerkPhase> phases) : phases_(std::move(phases)) {
+  if (phases_.empty()) return;
+  const JerkPhase& last = phases_.back();
+  duration_ = last.start + last.duration;
+  way_ = last.way + way_in(last, last.duration);
 }
 
 void JerkMotion::add_phase(double duration, double acceleration, double jerk) {

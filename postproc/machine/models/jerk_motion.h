@@ -1,6 +1,6 @@
-// The speed along a chain of stretches when the acceleration along the path cannot jump: every
-// change of speed that the profile without a limit on jerk makes becomes an S-curve.
-// Method: docs/algorithms/cycle_time.md.
+// The speed along a chain of stretches when the acceleration along the path cannot jump: the
+// changes of speed that the profile without a limit on jerk makes become S-curves. Method:
+// docs/algorithms/cycle_time.md.
 #pragma once
 
 #include <span>
@@ -22,11 +22,14 @@ struct JerkPhase {
 
 class JerkMotion {
  public:
-  // `velocities` are those of joint_velocities(chain, rules); of the stretches that a change of
-  // speed runs over, the least jerk counts. It takes no less time than
-  // the profile without a limit.
+  // `velocities` are those of joint_velocities(chain, rules). Of the stretches that a change of
+  // speed runs over, the least jerk counts; where it runs through levels that it could not hold,
+  // their mean. In bends a part of the jerk turns the acceleration.
   JerkMotion(std::span<const VelocityStretch> chain, std::span<const double> velocities,
              const ProfileRules& rules);
+
+  // Phases that follow each other.
+  explicit JerkMotion(std::vector<JerkPhase> phases);
 
   [[nodiscard]] double duration() const { return duration_; }  // s
 

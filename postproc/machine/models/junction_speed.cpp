@@ -42,6 +42,18 @@ Vector3 axis_accelerations(const Machine& machine) {
 
 Vector3 axis_jerks(const Machine& machine) { return of_xyz(machine, &AxisLimits::jerk); }
 
+KinematicPathLimits kinematic_limits(const Machine& machine, double feed, bool rapid) {
+  KinematicPathLimits limits;
+  limits.feed = std::min(feed / kMinute, machine.path_feed);
+  limits.speed = axis_velocities(machine, rapid);
+  limits.acceleration = axis_accelerations(machine);
+  limits.jerk = axis_jerks(machine);
+  limits.tangential_acceleration = machine.path_acceleration;
+  limits.tangential_jerk = machine.path_jerk;
+  limits.period = machine.servo_period;
+  return limits;
+}
+
 double limit_along(const Vector3& direction, const Vector3& limits) {
   const double limit = least_ratio(limits, direction);
   return limit < kNoLimit ? limit : limits.minCoeff();
@@ -65,6 +77,22 @@ double limit_on(const geometry::PathPiece& piece, const Vector3& limits) {
     return limits.minCoeff();
   }
   return limit_across(arc->axis, limits);
+}
+
+double mean_limit_on(const geometry::PathPiece& piece, const Vector3& limits) {
+  if (std::holds_alternative<geometry::Line>(piece)) return limit_on(piece, limits);
+  if (std::isinf(limits.minCoeff())) return limits.minCoeff();
+  constexpr double kApart = 0.4;  // radians
+  constexpr int kMost = 8;
+  const auto* arc = std::get_if<geometry::Arc>(&piece);
+  const int places =
+      arc == nullptr ? kMost
+                     : std::clamp(static_cast<int>(std::abs(arc->sweep) / kApart) + 1, 1, kMost);
+  double sum = 0;
+  for (int i = 0; i < places; ++i) {
+    sum += 1 / limit_along(geometry::direction_at(piece, (i + 0.5) / places), limits);
+  }
+  return places / sum;
 }
 
 double greatest_curvature(const geometry::PathPiece& piece) {

@@ -4,6 +4,7 @@
 #include "geometry/basic/point.h"
 #include "geometry/path/path.h"
 #include "postproc/machine/machine.h"
+#include "postproc/machine/planner/feed_plan_path.h"
 
 namespace batten::postproc {
 
@@ -11,6 +12,9 @@ namespace batten::postproc {
 [[nodiscard]] geometry::Vector3 axis_velocities(const Machine& machine, bool rapid);  // mm/s
 [[nodiscard]] geometry::Vector3 axis_accelerations(const Machine& machine);           // mm/s^2
 [[nodiscard]] geometry::Vector3 axis_jerks(const Machine& machine);  // mm/s^3, may be infinite
+
+// What a plan of these axes keeps at a feed (mm/min).
+[[nodiscard]] KinematicPathLimits kinematic_limits(const Machine& machine, double feed, bool rapid);
 
 // The greatest length of a vector along the unit vector `direction` none of whose components
 // is above its axis' limit.
@@ -23,6 +27,10 @@ namespace batten::postproc {
 // The same for all directions that the piece turns through: along a line its own, across the axis
 // of a flat arc, otherwise any.
 [[nodiscard]] double limit_on(const geometry::PathPiece& piece, const geometry::Vector3& limits);
+
+// The harmonic mean of what the directions along the piece allow.
+[[nodiscard]] double mean_limit_on(const geometry::PathPiece& piece,
+                                   const geometry::Vector3& limits);
 
 // 1/mm, of its ends and its middle.
 [[nodiscard]] double greatest_curvature(const geometry::PathPiece& piece);

@@ -128,20 +128,20 @@ double change_along(const LengthDerivatives& x, const PlanState& from, const Pla
 // nodes. Limits are asked for at both ends and in the middle of each interval.
 class BentSection {
  public:
-  BentSection(std::span<const PathPiece> path, const PlannedSection& section,
-              const KinematicPathLimits& limits, double density)
+  BentSection(std::span<const PathPiece> path, const PlannedSection& section, LimitsOfPieces limits,
+              double density)
       : path_(path), section_(section), limits_(limits) {
     GridRule rule = kPlanGrid;
     rule.density = density;
     intervals = intervals_of(section, path, limits, rule);
     if (section.start.is_rest()) {
       first = intervals.front();
-      start = rest_motion(path[first.piece], first, limits);
+      start = rest_motion(path[first.piece], first, limits_of(limits, first.piece));
       intervals.erase(intervals.begin());
     }
     if (section.end.is_rest()) {
       last = intervals.back();
-      end = rest_motion(path[last.piece], last, limits);
+      end = rest_motion(path[last.piece], last, limits_of(limits, last.piece));
       intervals.pop_back();
     }
   }
@@ -166,11 +166,12 @@ class BentSection {
 
   std::span<const PathPiece> path_;
   const PlannedSection& section_;
-  const KinematicPathLimits& limits_;
+  LimitsOfPieces limits_;
 };
 
 void BentSection::add_interval(std::size_t number, SearchProblem& problem) const {
   const FeedInterval& at = intervals[number];
+  const KinematicPathLimits& limits = limits_of(limits_, at.piece);
   const double h = at.length;
   const double k = 6 / (h * h);
   // q, p and r at the start, in the middle and at the end, by the unknowns; Simpson's rule.
@@ -183,10 +184,10 @@ void BentSection::add_interval(std::size_t number, SearchProblem& problem) const
     SearchPlace place{.sums = sums[which], .first = 2 * number};
     place.time = which == 1 ? 4 * h / 6 : h / 6;
     const LengthDerivatives here = derivatives_by_length(path_[at.piece], t[which]);
-    problem.add_jerk_rows(here, limits_, place);
+    problem.add_jerk_rows(here, limits, place);
     // Speed and acceleration run on from the end of the interval before, unless the bend jumps.
     if (which > 0 || number == 0 || intervals[number - 1].piece != at.piece) {
-      problem.add_other_limits(here, limits_, place);
+      problem.add_other_limits(here, limits, place);
     }
     if (which == 2) place.lower_speed(at.end_bound);
     problem.places.push_back(place);
@@ -259,15 +260,16 @@ bool BentSection::raise_above_zero() {
 bool BentSection::is_too_long(std::size_t number, const RefineRule& rule) const {
   const FeedInterval& at = intervals[number];
   const PathPiece& piece = path_[at.piece];
+  const KinematicPathLimits& limits = limits_of(limits_, at.piece);
   const double* window = x.data() + 2 * number;
   const auto state_at = [&](double s) { return state_in(window, at.length, s); };
   const LengthDerivatives middle = derivatives_by_length(piece, 0.5 * (at.t0 + at.t1));
-  if (change_along(middle, state_at(0), state_at(at.length), limits_) > rule.switching) return true;
+  if (change_along(middle, state_at(0), state_at(at.length), limits) > rule.switching) return true;
   // The limits are kept at both ends and in the middle: look between those.
   return std::ranges::any_of(std::array{0.125, 0.25, 0.375, 0.625, 0.75, 0.875}, [&](double part) {
     const double t = at.t0 + part * (at.t1 - at.t0);
     const PlanState state = state_at(length_between(piece, at.t0, t));
-    return use_of_limits(derivatives_by_length(piece, t), state, limits_) > 1 + rule.excess;
+    return use_of_limits(derivatives_by_length(piece, t), state, limits) > 1 + rule.excess;
   });
 }
 
@@ -328,7 +330,7 @@ void BentSection::solve() {
 
 class Planner {
  public:
-  Planner(std::span<const PathPiece> path, const KinematicPathLimits& limits, double density)
+  Planner(std::span<const PathPiece> path, LimitsOfPieces limits, double density)
       : path_(path), limits_(limits), density_(density) {}
 
   FeedPlan run(const PlanEnds& ends) {
@@ -416,7 +418,7 @@ class Planner {
   }
 
   std::span<const PathPiece> path_;
-  const KinematicPathLimits& limits_;
+  LimitsOfPieces limits_;
   double density_;
   FeedPlan plan_;
 };
@@ -425,6 +427,11 @@ class Planner {
 
 FeedPlan plan_feed(std::span<const PathPiece> path, const KinematicPathLimits& limits,
                    const PlanEnds& ends, double density) {
+  return plan_feed(path, LimitsOfPieces(&limits, 1), ends, density);
+}
+
+FeedPlan plan_feed(std::span<const PathPiece> path, LimitsOfPieces limits, const PlanEnds& ends,
+                   double density) {
   return Planner(path, limits, density).run(ends);
 }
 

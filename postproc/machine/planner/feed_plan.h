@@ -47,4 +47,11 @@ inline constexpr double kPlanDensity = 6;
                                  const KinematicPathLimits& limits, const PlanEnds& ends = {},
                                  double density = kPlanDensity);
 
+// The same where each piece has limits of its own: a feed, or the speeds of a rapid.
+//
+// Requires the same limits on jerk, finite or not, on all pieces. Throws std::invalid_argument,
+// too, for another number of limits than one or that of the pieces.
+[[nodiscard]] FeedPlan plan_feed(std::span<const geometry::PathPiece> path, LimitsOfPieces limits,
+                                 const PlanEnds& ends = {}, double density = kPlanDensity);
+
 }  // namespace batten::postproc

@@ -1,7 +1,9 @@
 // A path as its feed plan sees it: derivatives by length at a place, and lengths of parts.
 #pragma once
 
+#include <cstddef>
 #include <limits>
+#include <span>
 
 #include "geometry/basic/point.h"
 #include "geometry/path/kinematic_feed.h"
@@ -35,11 +37,21 @@ struct KinematicPathLimits {
       : feed(axes.feed), speed(axes.speed), acceleration(axes.acceleration), jerk(axes.jerk) {}
 };
 
+// Of each piece of a path its own, or one for all of them.
+using LimitsOfPieces = std::span<const KinematicPathLimits>;
+
+[[nodiscard]] inline const KinematicPathLimits& limits_of(LimitsOfPieces limits,
+                                                          std::size_t piece) {
+  return limits.size() == 1 ? limits.front() : limits[piece];
+}
+
 // The greatest speeds at both ends, mm/s, each passed with any acceleration; 0 is rest, with
-// acceleration 0.
+// acceleration 0. Where the ends are steady the speeds are exactly these, without acceleration;
+// this requires way enough to come to them.
 struct PlanEnds {
   double start_speed = 0;
   double end_speed = 0;
+  bool are_steady = false;
 };
 
 // Throws std::invalid_argument, with the name of the limit, when one is not as said above, or when

@@ -114,20 +114,29 @@ bool is_of_rounding(std::span<const double> lengths, std::size_t i) {
   return lengths[i] < kPart * std::min(lengths[i - 1], lengths[i + 1]);
 }
 
+// mm/s, at a joint where the limits of speed change; none where they do not.
+double feed_change(LimitsOfPieces limits, std::size_t before, std::size_t after) {
+  const KinematicPathLimits& a = limits_of(limits, before);
+  const KinematicPathLimits& b = limits_of(limits, after);
+  if (a.feed == b.feed && a.speed == b.speed) return kNone;
+  return std::min(a.feed, b.feed);
+}
+
 // The pieces between two stops.
 class PartChain {
  public:
-  explicit PartChain(const KinematicPathLimits& limits) : limits_(limits), potential_(limits) {}
+  explicit PartChain(LimitsOfPieces limits) : limits_(limits), potential_(limits.front()) {}
 
   void add(const PathPiece& piece, std::size_t number, const LengthDerivatives& start,
            const LengthDerivatives& end) {
+    const KinematicPathLimits& limits = limits_of(limits_, number);
     if (std::holds_alternative<geometry::Line>(piece)) {
-      const double cap = kCut.above_feed_on_lines * limits_along(start.first, limits_).speed;
+      const double cap = kCut.above_feed_on_lines * limits_along(start.first, limits).speed;
       return add_part({.piece = number, .length = geometry::length_of(piece)}, start.first, cap);
     }
     const int forced = least_cuts(piece);
-    cut(piece, {.piece = number, .straight = false}, needs_of(start, limits_),
-        needs_of(end, limits_), forced, std::max(forced, kCut.most_cuts));
+    cut(piece, {.piece = number, .straight = false}, needs_of(start, limits), needs_of(end, limits),
+        forced, std::max(forced, kCut.most_cuts));
   }
 
   [[nodiscard]] bool is_empty() const { return parts_.empty(); }
@@ -154,7 +163,7 @@ class PartChain {
 
  private:
   void add_part(FeedPart part, const Vector3& direction, double cap) {
-    const LimitsAlong along = limits_along(direction, limits_);
+    const LimitsAlong along = limits_along(direction, limits_of(limits_, part.piece));
     part.cap = potential_.of_speed(cap);
     part.slope = potential_.slope(along);
     // From rest the acceleration grows with the speed until feed or acceleration limit are near.
@@ -169,7 +178,7 @@ class PartChain {
            int forced, int most) {
     const double t = 0.5 * (part.t0 + part.t1);
     const LengthDerivatives x = derivatives_by_length(piece, t);
-    const Needs middle = needs_of(x, limits_);
+    const Needs middle = needs_of(x, limits_of(limits_, part.piece));
     FeedPart half = part;
     half.bend = bend_between(from, middle) + bend_between(middle, to);
     if (forced > 0 || (most > 0 && half.bend > kCut.greatest_bend)) {
@@ -220,7 +229,7 @@ class PartChain {
     return joints;
   }
 
-  const KinematicPathLimits& limits_;
+  LimitsOfPieces limits_;
   Potential potential_;
   std::vector<FeedPart> parts_;
   std::vector<double> w_;
@@ -238,18 +247,24 @@ bool PlannedSection::is_straight() const {
 }
 
 StraightRun straight_run(const PlannedSection& section, std::span<const PathPiece> path,
-                         const KinematicPathLimits& limits) {
+                         LimitsOfPieces limits) {
   double length = 0;
   for (const FeedPart& part : section.parts) length += part.length;
-  const Vector3 direction = geometry::direction_at(path[section.parts.front().piece], 0);
+  const std::size_t first = section.parts.front().piece;
+  const Vector3 direction = geometry::direction_at(path[first], 0);
   return straight_run(length, section.start.speed, section.end.speed,
-                      limits_along(direction, limits));
+                      limits_along(direction, limits_of(limits, first)));
 }
 
-PassedJoints for_each_section(std::span<const PathPiece> path, const KinematicPathLimits& limits,
+PassedJoints for_each_section(std::span<const PathPiece> path, LimitsOfPieces limits,
                               const PlanEnds& ends,
                               const std::function<void(const PlannedSection&)>& use) {
-  require_sound(limits);
+  if (limits.size() != 1 && limits.size() != path.size()) {
+    throw std::invalid_argument(std::to_string(limits.size()) + " limits, expected one or " +
+                                std::to_string(path.size()));
+  }
+  std::ranges::for_each(limits, require_sound);
+  if (path.empty()) return {};
   if (!(ends.start_speed >= 0 && ends.end_speed >= 0)) {
     throw std::invalid_argument("end speeds " + std::to_string(ends.start_speed) + " and " +
                                 std::to_string(ends.end_speed) + ", expected 0 or more");
@@ -259,14 +274,16 @@ PassedJoints for_each_section(std::span<const PathPiece> path, const KinematicPa
   std::vector<double> lengths(path.size());
   std::ranges::transform(path, lengths.begin(),
                          [](const PathPiece& piece) { return geometry::length_of(piece); });
-  SectionEnd from = {ends.start_speed, ends.start_speed > 0};
+  const bool is_free = !ends.are_steady;
+  SectionEnd from = {ends.start_speed, is_free && ends.start_speed > 0};
   LengthDerivatives last;
+  std::size_t before = 0;
   for (std::size_t i = 0; i < path.size(); ++i) {
     if (!has_length(path[i]) || is_of_rounding(lengths, i)) continue;
     const LengthDerivatives start = derivatives_by_length(path[i], 0);
     if (!chain.is_empty()) {
-      const double bound = joint_speed(last, start, limits);
-      chain.set_end_bound(bound);
+      const double bound = joint_speed(last, start, limits_of(limits, i));
+      chain.set_end_bound(std::min(bound, feed_change(limits, before, i)));
       if (bound == 0) {
         ++joints.stops;
         chain.finish(from, {}, use);
@@ -278,9 +295,10 @@ PassedJoints for_each_section(std::span<const PathPiece> path, const KinematicPa
     last =
         std::holds_alternative<geometry::Line>(path[i]) ? start : derivatives_by_length(path[i], 1);
     chain.add(path[i], i, start, last);
+    before = i;
   }
   if (!chain.is_empty()) {
-    chain.finish(from, {ends.end_speed, ends.end_speed > 0}, use);
+    chain.finish(from, {ends.end_speed, is_free && ends.end_speed > 0}, use);
   }
   return joints;
 }
@@ -353,9 +371,9 @@ class Rise {
 
 class GridMaker {
  public:
-  GridMaker(const PlannedSection& section, std::span<const PathPiece> path,
-            const KinematicPathLimits& limits, const GridRule& rule)
-      : section_(section), path_(path), potential_(limits), rule_(rule) {}
+  GridMaker(const PlannedSection& section, std::span<const PathPiece> path, LimitsOfPieces limits,
+            const GridRule& rule)
+      : section_(section), path_(path), potential_(limits.front()), rule_(rule) {}
 
   std::vector<FeedInterval> run() {
     const auto& parts = section_.parts;
@@ -472,8 +490,8 @@ class GridMaker {
 }  // namespace
 
 std::vector<FeedInterval> intervals_of(const PlannedSection& section,
-                                       std::span<const PathPiece> path,
-                                       const KinematicPathLimits& limits, const GridRule& rule) {
+                                       std::span<const PathPiece> path, LimitsOfPieces limits,
+                                       const GridRule& rule) {
   return GridMaker(section, path, limits, rule).run();
 }
 

@@ -30,7 +30,8 @@ struct FeedPart {
   double slope = 0;   // of the potential by mm, the greatest
   double top = 0;     // of the potential, where feed or acceleration end the first phase from rest
   double bend = 0;    // how much the shares of the limits that steady motion takes change over it
-  double end_bound = KinematicPathLimits::kNone;  // mm/s, what the joint at its end allows
+  // mm/s, what the joint at its end allows; where the limits change, the lesser feed at the most
+  double end_bound = KinematicPathLimits::kNone;
   bool straight = true;
 };
 
@@ -55,7 +56,7 @@ struct PlannedSection {
 // Of a straight section.
 [[nodiscard]] StraightRun straight_run(const PlannedSection& section,
                                        std::span<const geometry::PathPiece> path,
-                                       const KinematicPathLimits& limits);
+                                       LimitsOfPieces limits);
 
 struct PassedJoints {
   int stops = 0;
@@ -68,10 +69,10 @@ struct PassedJoints {
 // the square of the ratio of the speeds, as part of the time of a ramp; the envelope is 1.65 times
 // what jerk allows between two rests.
 //
-// Throws std::invalid_argument for limits that are not sound (require_sound) or negative end
-// speeds.
-PassedJoints for_each_section(std::span<const geometry::PathPiece> path,
-                              const KinematicPathLimits& limits, const PlanEnds& ends,
+// Throws std::invalid_argument for limits that are not sound (require_sound), another number of
+// them than one or that of the pieces, or negative end speeds.
+PassedJoints for_each_section(std::span<const geometry::PathPiece> path, LimitsOfPieces limits,
+                              const PlanEnds& ends,
                               const std::function<void(const PlannedSection&)>& use);
 
 struct FeedInterval {
@@ -93,8 +94,7 @@ struct GridRule {
 // constant acceleration where the jerk has no limit.
 [[nodiscard]] std::vector<FeedInterval> intervals_of(const PlannedSection& section,
                                                      std::span<const geometry::PathPiece> path,
-                                                     const KinematicPathLimits& limits,
-                                                     const GridRule& rule);
+                                                     LimitsOfPieces limits, const GridRule& rule);
 
 // The motion over an interval `length` mm long from rest, or to rest: speed grows with a power of
 // the way (2/3 where the jerk is limited, else 1/2), which constant jerk (or acceleration) gives.

@@ -8,6 +8,7 @@
 #include "geometry/path/parameter_samples.h"
 #include "postproc/machine/models/junction_speed.h"
 #include "postproc/machine/planner/feed_plan.h"
+#include "postproc/machine/planner/planned_interval.h"
 #include "postproc/machine/planner/s_curve.h"
 
 namespace batten::postproc {
@@ -18,18 +19,6 @@ constexpr double kHalf = 0.5;
 // Radians: a turn that is rounding, for S-curves.
 constexpr double kSmooth = 1e-4;
 
-KinematicPathLimits limits_of_piece(const TimedPiece& piece, const Machine& machine) {
-  KinematicPathLimits limits;
-  limits.feed = std::min(piece.feed / kMinute, machine.path_feed);
-  limits.speed = axis_velocities(machine, piece.rapid);
-  limits.acceleration = axis_accelerations(machine);
-  limits.jerk = axis_jerks(machine);
-  limits.tangential_acceleration = machine.path_acceleration;
-  limits.tangential_jerk = machine.path_jerk;
-  limits.period = machine.servo_period;
-  return limits;
-}
-
 SCurveLimits s_curve_limits(const Machine& machine) {
   SCurveLimits limits;
   limits.velocity = std::min(machine.max_velocity(), machine.path_feed);
@@ -39,138 +28,98 @@ SCurveLimits s_curve_limits(const Machine& machine) {
 }
 
 // A piece is slow where it takes so many times as long as the machine takes to its feed. A plan has
-// nodes in such times: along slow pieces nothing happens but at stops.
+// nodes in such times: along slow pieces nothing happens but at their ends.
 constexpr double kSlow = 300;
+
+// Of such a time, the way at the feed from the end of a slow piece that is planned: after half of
+// one the feed is reached, without acceleration.
+constexpr double kSettled = 2;
 
 // The part of the acceleration and of the jerk that bends of slow pieces may take.
 constexpr double kLittle = 0.1;
 
-// Pieces of one feed, which are planned as one, and how fast its ends may be passed.
-struct Stretch {
-  std::size_t first = 0;
-  std::size_t count = 0;
-  PlanEnds ends;
-  FeedPlan plan;
-  bool slow = false;  // it runs at its feed but at stops, and has no plan
-};
-
-class JerkPlans {
+// A plan of a whole chain. Slow pieces are planned near their ends only and run at their feed
+// between them.
+class JerkPlan {
  public:
-  JerkPlans(std::span<const TimedPiece> pieces, const Machine& machine)
-      : pieces_(pieces), machine_(machine) {
-    for (const TimedPiece& piece : pieces) path_.push_back(piece.piece);
-  }
+  JerkPlan(std::span<const TimedPiece> pieces, const Machine& machine)
+      : pieces_(pieces), machine_(machine), along_(s_curve_limits(machine)) {}
 
-  std::vector<PlannedPiece> run() {
-    cut();
-    for (Stretch& stretch : stretches_) {
-      stretch.slow = is_slow(stretch);
-      if (!stretch.slow) plan(stretch);
+  std::vector<FeedPlanNode> run() {
+    for (std::size_t i = 0; i < pieces_.size(); ++i) {
+      const double feed = pieces_[i].feed / kMinute;
+      const double settled = kSettled * feed * s_curve_change(feed, along_);
+      const double length = geometry::length_of(pieces_[i].piece);
+      if (!is_slow(pieces_[i].piece, feed, kSlow / kSettled * settled)) {
+        add(i, 0, 1);
+        continue;
+      }
+      const double share = settled / length;
+      add(i, 0, share);
+      plan_up_to(feed);
+      run_on(i, 1 - share, (1 - 2 * share) * length);
+      add(i, 1 - share, 1);
     }
-    // A stretch may not come to the speed at which its neighbour would pass their joint.
-    for (std::size_t i = 1; i < stretches_.size(); ++i) meet(stretches_[i - 1], stretches_[i]);
-    for (std::size_t i = stretches_.size(); i-- > 1;) meet(stretches_[i - 1], stretches_[i]);
-    std::vector<PlannedPiece> all(pieces_.size());
-    for (const Stretch& stretch : stretches_) count(stretch, all);
-    return all;
+    plan_up_to(0);
+    return std::move(nodes_);
   }
 
  private:
-  void cut() {
-    for (std::size_t i = 0; i < pieces_.size(); ++i) {
-      const bool goes_on = i > 0 && pieces_[i].feed == pieces_[i - 1].feed &&
-                           pieces_[i].rapid == pieces_[i - 1].rapid;
-      if (goes_on) {
-        ++stretches_.back().count;
-        continue;
-      }
-      if (i > 0) {
-        const KinematicPathLimits before = limits_of_piece(pieces_[i - 1], machine_);
-        const KinematicPathLimits after = limits_of_piece(pieces_[i], machine_);
-        const double joint = joint_speed(derivatives_by_length(path_[i - 1], 1),
-                                         derivatives_by_length(path_[i], 0), after);
-        stretches_.back().ends.end_speed = std::min({joint, before.feed, after.feed});
-      }
-      const double speed = i > 0 ? stretches_.back().ends.end_speed : 0;
-      stretches_.push_back({.first = i, .count = 1, .ends = {speed, 0}, .plan = {}});
+  // A piece of the chain between two of its parameters.
+  struct Part {
+    std::size_t piece = 0;
+    double t0 = 0;
+    double t1 = 1;
+  };
+
+  [[nodiscard]] bool is_slow(const geometry::PathPiece& piece, double feed, double length) const {
+    if (!(geometry::length_of(piece) > length) || feed > along_.velocity) return false;
+    if (std::holds_alternative<geometry::CubicBezier>(piece)) return false;
+    const double bend = greatest_curvature(piece);
+    return bend * feed * feed <= kLittle * along_.acceleration &&
+           bend * bend * feed * feed * feed <= kLittle * along_.jerk;
+  }
+
+  void add(std::size_t piece, double t0, double t1) {
+    const bool whole = t0 == 0 && t1 == 1;
+    path_.push_back(whole ? pieces_[piece].piece
+                          : geometry::sub_piece(pieces_[piece].piece, t0, t1));
+    limits_.push_back(kinematic_limits(machine_, pieces_[piece].feed, pieces_[piece].rapid));
+    parts_.push_back({piece, t0, t1});
+  }
+
+  // From the speed that the plan has come to, to this one, both held; 0 is rest.
+  void plan_up_to(double end_speed) {
+    const double start_speed = nodes_.empty() ? 0 : nodes_.back().speed;
+    const FeedPlan plan = plan_feed(path_, limits_, {start_speed, end_speed, true});
+    const FeedPlanNode from = nodes_.empty() ? FeedPlanNode{} : nodes_.back();
+    if (!nodes_.empty()) nodes_.pop_back();
+    for (FeedPlanNode node : plan.nodes) {
+      const Part& part = parts_[node.piece];
+      node.distance += from.distance;
+      node.time += from.time;
+      node.piece = part.piece;
+      node.t = part.t0 + (part.t1 - part.t0) * node.t;
+      nodes_.push_back(node);
     }
+    path_.clear();
+    limits_.clear();
+    parts_.clear();
   }
 
-  void plan(Stretch& stretch) const {
-    stretch.plan = plan_feed(std::span(path_).subspan(stretch.first, stretch.count),
-                             limits_of_piece(pieces_[stretch.first], machine_), stretch.ends);
-  }
-
-  void meet(Stretch& before, Stretch& after) const {
-    if (before.plan.nodes.empty() || after.plan.nodes.empty()) return;
-    const double end = before.plan.nodes.back().speed;
-    const double start = after.plan.nodes.front().speed;
-    const double both = std::min(end, start);
-    if (end > both) {
-      before.ends.end_speed = both;
-      plan(before);
-    } else if (start > both) {
-      after.ends.start_speed = both;
-      plan(after);
-    }
-  }
-
-  // mm/s, in any direction.
-  [[nodiscard]] double speed_of(const Stretch& stretch) const {
-    return std::min(pieces_[stretch.first].feed / kMinute, s_curve_limits(machine_).velocity);
-  }
-
-  // Whether its pieces are slow, and bend so little that they are run at the feed.
-  [[nodiscard]] bool is_slow(const Stretch& stretch) const {
-    const SCurveLimits limits = s_curve_limits(machine_);
-    const double v = speed_of(stretch);
-    const double change = s_curve_change(v, limits);
-    return std::ranges::all_of(std::span(path_).subspan(stretch.first, stretch.count),
-                               [&](const geometry::PathPiece& piece) {
-                                 const double curvature = greatest_curvature(piece);
-                                 return geometry::length_of(piece) > kSlow * v * change &&
-                                        curvature * v * v <= kLittle * limits.acceleration &&
-                                        curvature * curvature * v * v * v <= kLittle * limits.jerk;
-                               });
-  }
-
-  // Each change of speed at a joint takes longer than its way at the feed.
-  void count_slow(const Stretch& stretch, std::vector<PlannedPiece>& all) const {
-    const KinematicPathLimits limits = limits_of_piece(pieces_[stretch.first], machine_);
-    const double v = speed_of(stretch);
-    const auto lost = [&, of = s_curve_limits(machine_)](double joint) {
-      const double change = std::max(v - joint, 0.0);
-      return s_curve_change(change, of) * change / (2 * v);
-    };
-    double start = stretch.ends.start_speed;
-    for (std::size_t i = stretch.first; i < stretch.first + stretch.count; ++i) {
-      const bool last = i + 1 == stretch.first + stretch.count;
-      const double end = last ? stretch.ends.end_speed
-                              : joint_speed(derivatives_by_length(path_[i], 1),
-                                            derivatives_by_length(path_[i + 1], 0), limits);
-      all[i].seconds += geometry::length_of(path_[i]) / v + lost(start) + lost(end);
-      start = end;
-    }
-  }
-
-  void count(const Stretch& stretch, std::vector<PlannedPiece>& all) const {
-    if (stretch.slow) return count_slow(stretch, all);
-    const auto& nodes = stretch.plan.nodes;
-    for (std::size_t i = 0; i + 1 < nodes.size(); ++i) {
-      const std::size_t number = stretch.first + nodes[i].piece;
-      const double seconds = nodes[i + 1].time - nodes[i].time;
-      const double way = nodes[i + 1].distance - nodes[i].distance;
-      all[number].seconds += seconds;
-      if (way < kHalf * pieces_[number].feed / kMinute * seconds) {
-        all[number].slow_seconds += seconds;
-      }
-    }
+  void run_on(std::size_t piece, double t, double length) {
+    const FeedPlanNode& from = nodes_.back();
+    const double seconds = length / from.speed;
+    nodes_.push_back({from.distance + length, from.speed, 0, from.time + seconds, piece, t});
   }
 
   std::span<const TimedPiece> pieces_;
   const Machine& machine_;
-  std::vector<geometry::PathPiece> path_;
-  std::vector<Stretch> stretches_;
+  SCurveLimits along_;
+  std::vector<geometry::PathPiece> path_;  // that is not yet planned
+  std::vector<KinematicPathLimits> limits_;
+  std::vector<Part> parts_;
+  std::vector<FeedPlanNode> nodes_;
 };
 
 // A place that is passed no faster than this, as a curvature: S-curves go by nothing else. 0 is
@@ -213,55 +162,127 @@ double s_curve_joint(std::span<const TimedPiece> pieces, std::size_t i) {
   return turn.norm() > kSmooth ? 0 : std::min(pieces[i - 1].feed, pieces[i].feed) / kMinute;
 }
 
-// The time between two nodes goes by the way: the curve is stretched over all of it.
-void count_s_curves(const std::vector<SCurveNode>& nodes, std::span<const TimedPiece> pieces,
-                    std::span<PlannedPiece> planned) {
-  std::size_t piece = 0;
-  double end = geometry::length_of(pieces.front().piece);  // mm, of that piece
-  for (std::size_t i = 1; i < nodes.size(); ++i) {
-    const double speed = kHalf * (nodes[i - 1].velocity + nodes[i].velocity);
-    if (!(speed > 0)) continue;
-    for (double at = nodes[i - 1].distance; at < nodes[i].distance;) {
-      while (at >= end && piece + 1 < pieces.size()) {
-        end += geometry::length_of(pieces[++piece].piece);
-      }
-      const bool is_last = piece + 1 == pieces.size();
-      const double to = is_last ? nodes[i].distance : std::min(nodes[i].distance, end);
-      const double seconds = (to - at) / speed;
-      planned[piece].seconds += seconds;
-      if (speed < kHalf * pieces[piece].feed / kMinute) planned[piece].slow_seconds += seconds;
-      at = to;
-    }
-  }
+// The S-curve between two speeds, stretched over all of the way.
+void add_s_curve(const SCurveNode& from, const SCurveNode& to, double distance,
+                 const SCurveLimits& limits, std::vector<JerkPhase>& phases) {
+  const double way = to.distance - from.distance;
+  const double speed = kHalf * (from.velocity + to.velocity);
+  if (!(way > 0) || !(speed > 0)) return;
+  const double change = to.velocity - from.velocity;
+  const double seconds = way / speed;
+  const double shortest = s_curve_change(std::abs(change), limits);
+  // Seconds of even jerk, of the shortest curve and of this one.
+  const double of_shortest =
+      std::isinf(limits.jerk) ? 0 : std::min(shortest / 2, limits.acceleration / limits.jerk);
+  const double rounded = shortest > 0 ? of_shortest / shortest * seconds : 0;
+  const double acceleration = change / (seconds - rounded);
+  JerkPhase phase{phases.empty() ? 0 : phases.back().start + phases.back().duration,
+                  0,
+                  distance,
+                  from.velocity,
+                  0,
+                  0};
+  const auto add = [&](double duration, double begin, double end) {
+    if (!(duration > 0)) return;
+    phase.duration = duration;
+    phase.acceleration = begin;
+    phase.jerk = (end - begin) / duration;
+    phases.push_back(phase);
+    phase.start += duration;
+    phase.way += duration * (phase.velocity + duration * (begin / 3 + end / 6));
+    phase.velocity += duration * (begin + end) / 2;
+  };
+  add(rounded, 0, acceleration);
+  add(seconds - 2 * rounded, acceleration, acceleration);
+  add(rounded, acceleration, 0);
 }
 
-std::vector<PlannedPiece> by_s_curves(std::span<const TimedPiece> pieces, const Machine& machine) {
+std::vector<JerkPhase> by_s_curves(std::span<const TimedPiece> pieces, const Machine& machine) {
   const SCurveLimits limits = s_curve_limits(machine);
-  std::vector<PlannedPiece> all(pieces.size());
+  std::vector<JerkPhase> phases;
   double start_speed = 0;
+  double distance = 0;  // mm of the parts before
   for (std::size_t first = 0, i = 1; i <= pieces.size(); ++i) {
     const bool is_end = i == pieces.size();
     const double joint = is_end ? 0 : s_curve_joint(pieces, i);
     if (!is_end && joint > 0 && pieces[i].feed == pieces[i - 1].feed) continue;
-    const auto part = pieces.subspan(first, i - first);
-    count_s_curves(s_curve_nodes_of(part, start_speed, joint, limits), part,
-                   std::span(all).subspan(first, i - first));
+    const auto nodes =
+        s_curve_nodes_of(pieces.subspan(first, i - first), start_speed, joint, limits);
+    for (std::size_t k = 1; k < nodes.size(); ++k) {
+      add_s_curve(nodes[k - 1], nodes[k], distance + nodes[k - 1].distance, limits, phases);
+    }
+    distance += nodes.back().distance;
     start_speed = joint;
     first = i;
   }
-  return all;
+  return phases;
 }
 
 }  // namespace
 
+PlannedMotion::PlannedMotion(std::span<const TimedPiece> pieces, const Machine& machine,
+                             FeedPlanner planner)
+    : pieces_(pieces) {
+  if (planner == FeedPlanner::kControl) {
+    throw std::invalid_argument("PlannedMotion: the model of a control is no plan");
+  }
+  if (pieces.empty()) return;
+  if (planner == FeedPlanner::kJerk) {
+    nodes_ = JerkPlan(pieces, machine).run();
+    if (!nodes_.empty()) duration_ = nodes_.back().time;
+    return;
+  }
+  s_curves_.emplace(by_s_curves(pieces, machine));
+  double end = 0;
+  for (const TimedPiece& piece : pieces) ends_.push_back(end += geometry::length_of(piece.piece));
+  duration_ = s_curves_->duration();
+}
+
+PlannedPosition PlannedMotion::position_at(double time) const {
+  if (s_curves_) {
+    const double way = s_curves_->way_at(time);
+    const auto end = std::ranges::upper_bound(ends_, way);
+    const std::size_t piece = std::min<std::size_t>(end - ends_.begin(), ends_.size() - 1);
+    const double length = geometry::length_of(pieces_[piece].piece);
+    const double left = std::clamp(ends_[piece] - way, 0.0, length);
+    return {piece, parameter_after(pieces_[piece].piece, 0, 1, length, length - left)};
+  }
+  const auto after = std::ranges::upper_bound(nodes_, time, {}, &FeedPlanNode::time);
+  if (after == nodes_.begin()) return {nodes_.front().piece, nodes_.front().t};
+  if (after == nodes_.end()) return {nodes_.back().piece, nodes_.back().t};
+  const FeedPlanNode& from = *(after - 1);
+  const PlannedInterval interval(from, *after);
+  const double t1 = after->piece == from.piece ? after->t : 1;
+  const double way = interval.distance_after(time - from.time);
+  return {from.piece,
+          parameter_after(pieces_[from.piece].piece, from.t, t1, interval.length(), way)};
+}
+
+std::vector<PlannedPiece> PlannedMotion::times_of_pieces() const {
+  std::vector<PlannedPiece> all(pieces_.size());
+  if (s_curves_) {
+    double start = 0;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const double end = i + 1 == all.size() ? duration_ : s_curves_->time_at(ends_[i]);
+      const double slow = kHalf * pieces_[i].feed / kMinute;
+      all[i] = {end - start, s_curves_->time_below(slow, start, end)};
+      start = end;
+    }
+    return all;
+  }
+  for (std::size_t i = 0; i + 1 < nodes_.size(); ++i) {
+    const std::size_t piece = nodes_[i].piece;
+    const double seconds = nodes_[i + 1].time - nodes_[i].time;
+    const double way = nodes_[i + 1].distance - nodes_[i].distance;
+    all[piece].seconds += seconds;
+    if (way < kHalf * pieces_[piece].feed / kMinute * seconds) all[piece].slow_seconds += seconds;
+  }
+  return all;
+}
+
 std::vector<PlannedPiece> planned_chain(std::span<const TimedPiece> pieces, const Machine& machine,
                                         FeedPlanner planner) {
-  if (planner == FeedPlanner::kControl) {
-    throw std::invalid_argument("planned_chain: the model of a control is no plan");
-  }
-  if (pieces.empty()) return {};
-  if (planner == FeedPlanner::kSCurve) return by_s_curves(pieces, machine);
-  return JerkPlans(pieces, machine).run();
+  return PlannedMotion(pieces, machine, planner).times_of_pieces();
 }
 
 }  // namespace batten::postproc

@@ -18,13 +18,14 @@ constexpr double kJump = 1e-3;
 
 class Sampler {
  public:
-  Sampler(const ProgramSteps& steps, double period,
+  Sampler(const ProgramSteps& steps, const Machine& machine, FeedPlanner planner, double period,
           const std::function<bool(const ProfileSample&)>& use)
-      : steps_(steps), period_(period), use_(use) {}
+      : steps_(steps), machine_(machine), planner_(planner), period_(period), use_(use) {}
 
   void run(const RunChain& chain) {
     if (stopped_) return;
     if (chain.pieces.empty()) return wait(chain);
+    if (planner_ != FeedPlanner::kControl) return run_plan(chain);
     const ChainMotion motion(chain.stretches);
     for (std::size_t i = 0; i < chain.stretches.places.size() && !stopped_; ++i) {
       run_stretch(chain, motion, i);
@@ -49,10 +50,28 @@ class Sampler {
     start_ = end;
   }
 
+  void run_plan(const RunChain& chain) {
+    const PlannedMotion motion(chain.pieces, machine_, planner_);
+    begin_at_start_of(chain.pieces.front().piece);
+    const double end = start_ + motion.duration();
+    while (next_time() < end && !stopped_) {
+      const PlannedPosition at = motion.position_at(next_time() - start_);
+      line_ = line_of(chain.steps[at.piece]);
+      emit(geometry::point_at(chain.pieces[at.piece].piece, at.t));
+    }
+    line_ = line_of(chain.steps.back());
+    place_ = geometry::end_point(chain.pieces.back().piece);
+    start_ = end;
+  }
+
+  void begin_at_start_of(const geometry::PathPiece& piece) {
+    const Point3 first = geometry::start_point(piece);
+    if (!moved_ || (first - place_).norm() > kJump) begin_at(first);
+  }
+
   void run_stretch(const RunChain& chain, const ChainMotion& motion, std::size_t i) {
     const StretchPlace& place = chain.stretches.places[i];
-    const Point3 first = geometry::start_point(place.path);
-    if (!moved_ || (first - place_).norm() > kJump) begin_at(first);
+    begin_at_start_of(place.path);
     const double end = start_ + motion.end_of(i);
     while (next_time() < end && !stopped_) {
       const double share = motion.share_at(i, next_time() - start_);
@@ -102,6 +121,8 @@ class Sampler {
   }
 
   const ProgramSteps& steps_;
+  const Machine& machine_;
+  FeedPlanner planner_;
   double period_;
   const std::function<bool(const ProfileSample&)>& use_;
   std::size_t samples_ = 0;
@@ -118,9 +139,9 @@ class Sampler {
 }  // namespace
 
 bool sample_program(const ProgramSteps& steps, const Machine& machine, double period,
-                    const std::function<bool(const ProfileSample&)>& use) {
+                    const std::function<bool(const ProfileSample&)>& use, FeedPlanner planner) {
   if (!(period > 0)) throw std::invalid_argument("sample_program: the period must be above 0");
-  Sampler sampler(steps, period, use);
+  Sampler sampler(steps, machine, planner, period, use);
   const auto run = [&](const RunChain& chain) { sampler.run(chain); };
   ChainCutter cutter(machine, std::numeric_limits<std::size_t>::max());
   for (const ProgramStep& step : steps.steps) cutter.add(step, steps.controls, run);

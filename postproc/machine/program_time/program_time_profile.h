@@ -1,4 +1,5 @@
-// A program's motion in time: where the tool is every millisecond, as the control's model says.
+// A program's motion in time: where the tool is every millisecond, as the control's model says or
+// by a plan.
 #pragma once
 
 #include <cstdint>
@@ -7,6 +8,7 @@
 #include "gcode/text/program.h"
 #include "geometry/basic/point.h"
 #include "postproc/machine/machine.h"
+#include "postproc/machine/program_time/planned_chain.h"
 #include "postproc/machine/program_time/program_time_steps.h"
 
 namespace batten::postproc {
@@ -26,8 +28,10 @@ struct ProfileSample {
 // the end. Stops where `use` says false, and returns false then. Samples are not kept.
 //
 // The places are those of the programmed path and of the bends that the control puts into its
-// corners; where a control cuts arcs into chords, those of the chords.
+// corners; where a control cuts arcs into chords, those of the chords. By a plan all are on the
+// programmed path.
 [[nodiscard]] bool sample_program(const ProgramSteps& steps, const Machine& machine, double period,
-                                  const std::function<bool(const ProfileSample&)>& use);
+                                  const std::function<bool(const ProfileSample&)>& use,
+                                  FeedPlanner planner = FeedPlanner::kControl);
 
 }  // namespace batten::postproc

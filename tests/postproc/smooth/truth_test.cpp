@@ -199,8 +199,12 @@ TEST_P(Truth, OfWhatIsWrittenIsNearerThanThatOfTheChords) {
   }
 }
 
-// Rows that a machine with limits on acceleration and jerk cannot run at their feed for noise.
-void expect_faster_and_nearer(double cam, double feed, double part) {
+// Rows that a machine with limits on acceleration and jerk cannot run at their feed for noise: it
+// nearly stops at each vertex. In the narrowest band some rows keep them, for all that their lines
+// and arcs win.
+void expect_faster_and_nearer(double cam, double feed) {
+  const bool narrow = cam < 0.003;
+  const std::size_t rows = narrow ? 5 : geometry::kSurfaceRows;
   for (unsigned seed = 1; seed <= seeds_to_try(); ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     const std::string before = surface_program(surface_rows(cam, kNoise, seed), feed);
@@ -209,24 +213,24 @@ void expect_faster_and_nearer(double cam, double feed, double part) {
     options.tolerance_mm = 2 * cam;
     const SmoothResult result = smoothed(before, options);
     EXPECT_TRUE(result.proved);
-    EXPECT_EQ(rewritten_runs(result), static_cast<std::size_t>(geometry::kSurfaceRows));
+    EXPECT_GE(rewritten_runs(result), rows);
     const double rms_before = rms_of_cuts(before);
     const double rms_after = rms_of_cuts(result.text);
     fmt::print(
         "CAM tolerance {}, noise 0.02, F{}, seed {}: rms {:.6f} -> {:.6f} mm, time {:.3f} -> "
         "{:.3f} s\n",
         cam, feed, seed, rms_before, rms_after, result.runs_before_s, result.runs_after_s);
-    EXPECT_LT(result.runs_after_s, part * result.runs_before_s);
+    EXPECT_LT(result.runs_after_s, (narrow ? 0.9 : 0.5) * result.runs_before_s);
     EXPECT_LT(rms_after, rms_before);
   }
 }
 
 TEST_P(Truth, OfNoisyRowsIsCutNearerAndFasterAtAFinishingFeed) {
-  expect_faster_and_nearer(GetParam(), 3000, 0.97);
+  expect_faster_and_nearer(GetParam(), 3000);
 }
 
 TEST_P(Truth, OfNoisyRowsIsCutNearerAndFasterAtAHighFeed) {
-  expect_faster_and_nearer(GetParam(), 6000, 0.75);
+  expect_faster_and_nearer(GetParam(), 6000);
 }
 
 // At a feed that noise does not let the machine hold, on a control that rounds corners itself, with

@@ -12,6 +12,7 @@
 
 #include "postproc/machine/planner/feed_plan_straight.h"
 #include "tests/support/machine_limits.h"
+#include "tests/support/planned_paths.h"
 
 namespace batten::postproc {
 namespace {
@@ -88,6 +89,91 @@ TEST(PlannedChain, KeepsTheFeedOfEachPiece) {
     }
     EXPECT_LT(seconds_of(planned), apart);
     EXPECT_EQ(planned[1].slow_seconds, 0);
+  }
+}
+
+// Sampled every 0.1 ms, no limit is exceeded by more than half a percent, nor does the acceleration
+// jump where the feed changes or a piece is so slow that it is not planned in its middle: a step of
+// it would be one of the jerk's whole limit within a thousandth of the time that it may take.
+TEST(PlannedChain, KeepsTheLimitsOfEachPiece) {
+  constexpr double kPeriod = 1e-4;
+  constexpr double kHalfAPercent = 1.005;
+  std::mt19937 random(5);
+  for (int i = 0; i < 6; ++i) {
+    SCOPED_TRACE(i);
+    Machine machine = machine_with_jerk(30000);
+    // Feeds of all sizes, longer and shorter than what the machine needs from one to the next.
+    std::vector<TimedPiece> chain;
+    for (const geometry::CubicBezier& piece : random_curve(random).bezier_pieces()) {
+      chain.push_back({piece, 600.0 * static_cast<double>(1 + random() % 12)});
+    }
+    if (i % 2 == 0) {  // a line between two feeds, and one that takes 120 s
+      const geometry::Vector3 way = geometry::direction_at(chain.back().piece, 1);
+      const Point3 end = geometry::end_point(chain.back().piece);
+      chain.push_back(cut_along(end, end + 0.8 * way, 9000));
+      chain.push_back(cut_along(end + 0.8 * way, end + 2.8 * way, 1));
+      chain.push_back(cut_along(end + 2.8 * way, end + 3 * way, 6000));
+    }
+    const PlannedMotion motion(chain, machine, FeedPlanner::kJerk);
+    geometry::Path path;
+    std::vector<KinematicPathLimits> limits;
+    for (const TimedPiece& piece : chain) {
+      path.push_back(piece.piece);
+      limits.push_back(path_limits_of(machine, piece.feed / 60));
+    }
+    FeedPlan plan;
+    plan.nodes = motion.nodes();
+    const Use use = greatest_use(path, plan, limits, kPeriod);
+    EXPECT_LE(use.share, kHalfAPercent) << use.where;
+    EXPECT_GE(use.share, 0.99);
+    // From sample to sample the acceleration changes by the jerk; where the curvature jumps, from
+    // the curve to the line behind it, by what the machine can do within its servo period.
+    const MotionSample* before = nullptr;
+    const std::vector<MotionSample> samples = sample_motion(path, plan, kPeriod);
+    for (const MotionSample& m : samples) {
+      if (before != nullptr) {
+        const geometry::Vector3 change = m.acceleration - before->acceleration;
+        const bool to_line = m.piece != before->piece && i % 2 == 0 && m.piece + 3 == path.size();
+        const double allowed = kPeriod + (to_line ? machine.servo_period : 0);
+        ASSERT_LE(change.cwiseAbs().maxCoeff(), 30000 * allowed * 1.02) << m.time;
+        ASSERT_LE((m.velocity - before->velocity).cwiseAbs().maxCoeff(), 1000 * kPeriod * 1.02)
+            << m.time;
+      }
+      before = &m;
+    }
+  }
+}
+
+// At any time it is on its piece, and the pieces take the times that they are said to take.
+TEST(PlannedChain, IsWhereItsTimesSay) {
+  const Machine machine = machine_with_jerk(20000);
+  const geometry::Arc arc{
+      {30, 0, 0}, {30, 20, 0}, {30, 10, 0}, geometry::Vector3::UnitZ(), std::numbers::pi};
+  const std::vector<TimedPiece> chain = {
+      cut_along({0, 0, 0}, {30, 0, 0}, 6000), {arc, 3000}, cut_along({30, 20, 0}, {0, 20, 0}, 1.5)};
+  for (const FeedPlanner planner : {FeedPlanner::kJerk, FeedPlanner::kSCurve}) {
+    SCOPED_TRACE(name_of(planner));
+    const PlannedMotion motion(chain, machine, planner);
+    const std::vector<PlannedPiece> times = motion.times_of_pieces();
+    double end = 0;
+    for (std::size_t i = 0; i < chain.size(); ++i) {
+      const PlannedPosition first = motion.position_at(end + 1e-9);
+      EXPECT_EQ(first.piece, i);
+      EXPECT_NEAR(first.t, 0, 1e-6);
+      end += times[i].seconds;
+      EXPECT_NEAR(motion.position_at(end - 1e-9).t, 1, 1e-6);
+    }
+    EXPECT_NEAR(motion.duration(), end, 1e-9);
+    // Never back, and not faster than the feed.
+    double way = 0;
+    for (double time = 0; time < end; time += 0.01) {
+      const PlannedPosition at = motion.position_at(time);
+      double now = at.t * geometry::length_of(chain[at.piece].piece);
+      for (std::size_t i = 0; i < at.piece; ++i) now += geometry::length_of(chain[i].piece);
+      ASSERT_GE(now, way);
+      ASSERT_LE(now - way, 1.005);
+      way = now;
+    }
   }
 }
 
