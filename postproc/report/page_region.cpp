@@ -1,5 +1,6 @@
 #include "postproc/report/page_region.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "geometry/band/band_region.h"
@@ -8,24 +9,35 @@
 namespace batten::postproc {
 namespace {
 
-// Of the tolerance: less than half a pixel where it is 60 pixels wide. So far off are the chords of
-// arcs, and places of the edge of the region that are left out.
-constexpr double kRegionDrawnWithin = 0.005;
+using geometry::Point2;
 
-// The polygon without corners on the straight way from the corner before to the one after.
-std::vector<geometry::Point2> without_straight_corners(const std::vector<geometry::Point2>& all,
-                                                       double within) {
-  std::vector<geometry::Point2> kept;
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    if (kept.empty() || i + 1 == all.size()) {
-      kept.push_back(all[i]);
-      continue;
-    }
-    const geometry::Vector2 along = all[i + 1] - kept.back();
-    const geometry::Vector2 off = all[i] - kept.back();
-    const double across = along.x() * off.y() - along.y() * off.x();
-    const bool goes_on = off.dot(along) > 0;
-    if (!goes_on || across * across > within * within * along.squaredNorm()) kept.push_back(all[i]);
+// Of the tolerance: less than half a pixel where it is 60 pixels wide. So far off are the chords of
+// arcs, and places of the path and of the edge of the region that are left out.
+constexpr double kRegionDrawnWithin = 0.005;
+// Left out in a row at most: each step asks all of them again.
+constexpr std::size_t kMostRegionSkipped = 64;
+
+double distance_to_chord(const Point2& from, const Point2& to, const Point2& place) {
+  const geometry::Vector2 along = to - from;
+  const double square = along.squaredNorm();
+  const double share = square > 0 ? std::clamp((place - from).dot(along) / square, 0.0, 1.0) : 0;
+  return (place - from - share * along).norm();
+}
+
+// The places without those that are near the chord from a kept one to the next. The ends stay.
+std::vector<Point2> thinned_places(std::span<const Point2> all, double within) {
+  std::vector<Point2> kept = {all.front()};
+  for (std::size_t from = 0; from + 1 < all.size();) {
+    std::size_t to = from + 1;
+    const auto may_skip_to = [&](std::size_t next) {
+      const auto is_near = [&](const Point2& place) {
+        return distance_to_chord(all[from], all[next], place) <= within;
+      };
+      return std::ranges::all_of(all.subspan(from + 1, next - from - 1), is_near);
+    };
+    while (to + 1 < all.size() && to - from < kMostRegionSkipped && may_skip_to(to + 1)) ++to;
+    kept.push_back(all[to]);
+    from = to;
   }
   return kept;
 }
@@ -41,16 +53,17 @@ void add_region(std::span<const geometry::PathPiece> before,
     ++region.in_space;
     return;
   }
-  const std::size_t edges = flat->before.size() - 1;
+  const std::vector<Point2> path = thinned_places(flat->before, within);
+  const std::size_t edges = path.size() - 1;
   if (region.edges + edges > most_edges) {
     ++region.left_out;
     return;
   }
   region.edges += edges;
   ++region.drawn;
-  for (const auto& polygon : geometry::band_outline(flat->before, tolerance_mm)) {
+  for (const auto& polygon : geometry::band_outline(path, tolerance_mm)) {
     std::vector<geometry::Point3> corners;
-    for (const geometry::Point2& corner : without_straight_corners(polygon, within)) {
+    for (const Point2& corner : thinned_places(polygon, within)) {
       corners.push_back(flat->in_space(corner));
     }
     region.polygons.push_back(std::move(corners));

@@ -13,8 +13,8 @@
 
 namespace batten::postproc {
 
-// A page may take so many edges of old paths; what is drawn of them takes some 100 bytes of the
-// page and a millisecond at most for each.
+// A page draws the region of so many edges of old paths, after those that are straight on are taken
+// together. It costs up to 0.3 ms and some 20 bytes of the page for each.
 inline constexpr std::size_t kMostRegionEdges = 10000;
 
 struct PageRegion {

@@ -90,13 +90,13 @@ TEST(PageRegion, LiesInThePlaneOfItsPath) {
   for (const Point3& corner : region.polygons[1]) EXPECT_EQ(corner.y(), 7);
 }
 
-TEST(PageRegion, LeavesOutCornersOnAStraightWay) {
+TEST(PageRegion, TakesEdgesTogetherThatAreStraightOn) {
   std::vector<Point3> fine;
   for (int i = 0; i <= 200; ++i) fine.emplace_back(0.01 * i, 0, 0);
   const PageRegion of_many = region_of(geometry::path_through(fine));
   const PageRegion of_one =
       region_of(geometry::path_through(std::vector<Point3>{fine.front(), fine.back()}));
-  EXPECT_EQ(of_many.edges, 200U);
+  EXPECT_LE(of_many.edges, 4U);  // not too many in one step
   ASSERT_EQ(of_many.polygons.size(), 1U);
   EXPECT_LE(of_many.polygons[0].size(), of_one.polygons[0].size() + 2);
 }
