@@ -135,35 +135,43 @@ std::optional<Point2> way_out(std::span<const Point2> chain, const RegionOutline
   return steps[first].from;
 }
 
-Point3 in_space(const Point2& flat, int axis, double height) {
+}  // namespace
+
+Point3 FlatPaths::in_space(const Point2& flat) const {
   Point3 place = Point3::Constant(height);
   place[axis == 0 ? 1 : 0] = flat.x();  // as across() takes them out
   place[axis == 2 ? 1 : 2] = flat.y();
   return place;
 }
 
-}  // namespace
+std::optional<FlatPaths> flat_paths(std::span<const PathPiece> before,
+                                    std::span<const PathPiece> after, double max_error) {
+  if (before.empty() || after.empty()) return std::nullopt;
+  const ChordPolyline old_chords = cut_into_chords(before, max_error);
+  const ChordPolyline new_chords = cut_into_chords(after, max_error);
+  const std::optional<int> axis = common_plane(old_chords, new_chords);
+  if (!axis) return std::nullopt;
+  FlatPaths flat{*axis, old_chords.points.front()[*axis], flattened(old_chords, *axis),
+                 flattened(new_chords, *axis)};
+  if (length_along(flat.before) <= kSamePlace || length_along(flat.after) <= kSamePlace) {
+    return std::nullopt;
+  }
+  return flat;
+}
 
 std::optional<RegionCheck> check_in_region(std::span<const PathPiece> before,
                                            std::span<const PathPiece> after, double tolerance) {
   require(tolerance > 0 && std::isfinite(tolerance), "check_in_region: tolerance", tolerance,
           "a finite number above 0");
-  if (before.empty() || after.empty()) return std::nullopt;
-  const ChordPolyline old_chords = cut_into_chords(before, kRegionChordPart * tolerance);
-  const ChordPolyline new_chords = cut_into_chords(after, kRegionChordPart * tolerance);
-  const std::optional<int> axis = common_plane(old_chords, new_chords);
-  if (!axis) return std::nullopt;
-  const std::vector<Point2> old_chain = flattened(old_chords, *axis);
-  const std::vector<Point2> new_chain = flattened(new_chords, *axis);
-  if (length_along(old_chain) <= kSamePlace || length_along(new_chain) <= kSamePlace) {
-    return std::nullopt;
-  }
+  const auto flat = flat_paths(before, after, kRegionChordPart * tolerance);
+  if (!flat) return std::nullopt;
+  const std::vector<Point2>& old_chain = flat->before;
+  const std::vector<Point2>& new_chain = flat->after;
   const RegionOutline region = band_outline(old_chain, kGrown * tolerance);
   RegionCheck check;
-  const double height = old_chords.points.front()[*axis];
   if (const auto place = way_out(new_chain, region)) {
     check.is_inside = false;
-    check.place = in_space(*place, *axis, height);
+    check.place = flat->in_space(*place);
     return check;
   }
   // There and back again: it turns about no hole when both paths pass it alike.
@@ -174,7 +182,7 @@ std::optional<RegionCheck> check_in_region(std::span<const PathPiece> before,
     ++check.holes;
     if (!check.passes_alike || turns_about(loop, region_place(polygon.front())) == 0) continue;
     check.passes_alike = false;
-    check.place = in_space(polygon.front(), *axis, height);
+    check.place = flat->in_space(polygon.front());
   }
   return check;
 }

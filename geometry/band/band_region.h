@@ -9,11 +9,29 @@
 #include <cstddef>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "geometry/basic/point.h"
 #include "geometry/path/path.h"
 
 namespace batten::geometry {
+
+// Two paths in one plane across an axis, as chains of chords seen along that axis.
+struct FlatPaths {
+  int axis = 2;
+  double height = 0;  // mm, of the plane along the axis
+  std::vector<Point2> before;
+  std::vector<Point2> after;
+
+  // A place of the plane.
+  [[nodiscard]] Point3 in_space(const Point2& flat) const;
+};
+
+// With the chords of arcs and Bezier pieces at most `max_error` (mm, > 0) off. Nothing where the
+// paths do not lie in one plane across an axis, or one of them has no length. Linear cost.
+[[nodiscard]] std::optional<FlatPaths> flat_paths(std::span<const PathPiece> before,
+                                                  std::span<const PathPiece> after,
+                                                  double max_error);
 
 struct RegionCheck {
   bool is_inside = true;          // the new path leaves the region nowhere
@@ -29,9 +47,8 @@ struct RegionCheck {
 // round ends. The new path starts and ends within the tolerance of the starts and ends of the old
 // one.
 //
-// Nothing where the paths do not lie in one plane across an axis, or one of them has no length.
-// Throws std::invalid_argument when the tolerance is not a positive number. Cost: that of
-// band_outline (geometry/band/tolerance_band.h).
+// Nothing where flat_paths gives nothing. Throws std::invalid_argument when the tolerance is not a
+// positive number. Cost: that of band_outline (geometry/band/tolerance_band.h).
 [[nodiscard]] std::optional<RegionCheck> check_in_region(std::span<const PathPiece> before,
                                                          std::span<const PathPiece> after,
                                                          double tolerance);

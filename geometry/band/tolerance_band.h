@@ -70,7 +70,8 @@ struct NewCrossing {
 
 // The edge of the band as closed polygons: the outer ones counter-clockwise, holes clockwise. Round
 // ends and corners have corners of their own every 15 degrees, on the outside by less than a
-// hundredth of the tolerance. Cost: some tenths of a millisecond for each edge.
+// hundredth of the tolerance. Cost: some tenths of a millisecond and 9 kB for each edge. Throws
+// std::bad_alloc where twice that memory is missing.
 [[nodiscard]] std::vector<std::vector<Point2>> band_outline(std::span<const Point2> points,
                                                             double tolerance);
 

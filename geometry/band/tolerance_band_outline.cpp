@@ -2,7 +2,9 @@
 #include <CGAL/Polygon_set_2.h>
 
 #include <cmath>
+#include <cstddef>
 #include <iterator>
+#include <new>
 #include <numbers>
 
 #include "geometry/band/tolerance_band.h"
@@ -39,6 +41,16 @@ Polygon capsule(const Point2& from, const Point2& to, double tolerance) {
   return polygon;
 }
 
+// The exact numbers of an edge took 9 kB of memory where 10,000 were joined; and the stack grows.
+constexpr std::size_t kBytesPerEdge = 20'000;
+constexpr std::size_t kBytesBeside = 8'000'000;
+
+// Exact numbers end the process where there is no memory for them. So it is asked for before, by
+// calls that nothing leaves out: throws std::bad_alloc where it is missing.
+void require_memory(std::size_t edges) {
+  ::operator delete(::operator new(kBytesBeside + kBytesPerEdge * edges));
+}
+
 std::vector<Point2> corners_of(const Polygon& polygon) {
   std::vector<Point2> corners;
   for (const auto& p : polygon.vertices()) {
@@ -52,6 +64,7 @@ std::vector<Point2> corners_of(const Polygon& polygon) {
 std::vector<std::vector<Point2>> band_outline(std::span<const Point2> points, double tolerance) {
   require(tolerance > 0 && std::isfinite(tolerance), "band_outline: tolerance", tolerance,
           "a finite number above 0");
+  require_memory(points.size());
   std::vector<Polygon> capsules;
   std::size_t last = 0;
   for (std::size_t i = 1; i < points.size(); ++i) {

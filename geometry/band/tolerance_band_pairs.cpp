@@ -203,6 +203,9 @@ std::optional<std::size_t> FlatEdges::after(std::size_t edge) const {
   const std::size_t chain = edges_[edge].chain;
   if (edge + 1 < edges_.size() && edges_[edge + 1].chain == chain) return edge + 1;
   if (is_closed(chain)) return first_[chain];
+  // A ring that left the plane for a while is closed where its last chain meets the first one.
+  const bool is_last = edge + 1 == edges_.size() && first_.size() > 1;
+  if (is_last && (edges_.front().from - edges_[edge].to).norm() <= kSamePlace) return 0;
   return {};
 }
 

@@ -36,7 +36,8 @@ class FlatEdges {
   [[nodiscard]] const Point2& from(std::size_t edge) const { return edges_[edge].from; }
   [[nodiscard]] const Point2& to(std::size_t edge) const { return edges_[edge].to; }
 
-  // The edge that starts where this one ends, along the path or round a closed chain.
+  // The edge that starts where this one ends, along the path or round a closed chain; also round a
+  // path that ends where it began and left the plane between.
   [[nodiscard]] std::optional<std::size_t> after(std::size_t edge) const;
 
  private:

@@ -41,6 +41,7 @@ constexpr Choice<Method> kMethods[] = {
     {Method::kFair, "fair", "the path that was meant, as smooth as the machine needs it"},
     {Method::kTimeOptimal, "racing",
      "lines, and at each corner the fastest curve on the machine; slow to compute"},
+    {Method::kTube, "tube", "of a few smooth curves in the tolerance the fastest on the machine"},
     {Method::kNaseath, "naseath",
      "a spline's control points moved inside a tube (Naseath 2007), repaired"},
     {Method::kGuo, "guo",

@@ -25,6 +25,7 @@ enum class Method {
   kBest,
   kFair,
   kTimeOptimal,
+  kTube,
   kNaseath,
   kGuo,
   kOzcan,

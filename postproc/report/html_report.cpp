@@ -1,6 +1,7 @@
 #include "postproc/report/html_report.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -56,6 +57,26 @@ Json columns_of(const Json& runs) {
   return columns;
 }
 
+// {"drawn": n, .. the corners of each polygon, and their places in a text per axis}
+Json region_columns(const PageRegion& region) {
+  Column sizes;
+  std::array<Column, 3> places;
+  for (const auto& polygon : region.polygons) {
+    sizes.push_back(static_cast<std::int64_t>(polygon.size()));
+    for (const geometry::Point3& corner : polygon) {
+      for (int axis = 0; axis < 3; ++axis) places[axis].push_back(rounded(corner[axis] / kUnit));
+    }
+  }
+  return {{"drawn", region.drawn},
+          {"in_space", region.in_space},
+          {"left_out", region.left_out},
+          {"most_edges", kMostRegionEdges},
+          {"sizes", packed(sizes)},
+          {"x", packed(steps_of(places[0]))},
+          {"y", packed(steps_of(places[1]))},
+          {"z", packed(steps_of(places[2]))}};
+}
+
 // {"count": n, "unit_mm": 0.0001, .. and a text per column (postproc/report/page_path.h)}
 Json path_columns(const PagePath& path) {
   using V = const PageVertex&;
@@ -103,7 +124,8 @@ Json path_columns(const PagePath& path) {
           {"curvature_after", curvature(&PageVertex::curvature_after)},
           {"speed_unit", fastest / kSpeedSteps},
           {"speed_before", speed(&PageVertex::speed_before)},
-          {"speed_after", speed(&PageVertex::speed_after)}};
+          {"speed_after", speed(&PageVertex::speed_after)},
+          {"region", region_columns(path.region)}};
 }
 
 Json path_of(const SmoothReport& report) {

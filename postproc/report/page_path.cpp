@@ -193,6 +193,8 @@ class PagePathBuilder {
     ++result_.stretches;
     result_.pairs += matching.pairs.size();
     add_pairs(matching.pairs, {old_motions, before}, {new_motions, after});
+    add_region(before, after, verification_.stretches[index].tolerance_mm,
+               options_.most_region_edges, result_.region);
   }
 
   struct Moves {

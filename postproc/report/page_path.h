@@ -18,6 +18,7 @@
 #include "postproc/machine/machine.h"
 #include "postproc/proof/program_events.h"
 #include "postproc/proof/verification.h"
+#include "postproc/report/page_region.h"
 
 namespace batten::postproc {
 
@@ -55,6 +56,7 @@ struct PagePath {
   std::size_t stretches = 0;
   std::size_t pairs = 0;                // of all certificates
   std::size_t stretches_not_shown = 0;  // their matching could not be made again
+  PageRegion region;                    // of the stretches that are shown
 };
 
 struct PageTuning {
@@ -73,6 +75,7 @@ struct PagePathOptions {
   geometry::ToleranceKind kind = geometry::ToleranceKind::kPath;
   // More vertices than this are thinned further: a page must open fast.
   std::size_t most_vertices = 300000;
+  std::size_t most_region_edges = kMostRegionEdges;
   const Machine* machine = nullptr;  // whose speeds are predicted; nullptr: none are
 };
 

@@ -31,6 +31,11 @@ struct RunTuning {
   double more_room = 3;
   double side_margin = 0.25;  // of the form's share, on the side where the run must not be cut
   double sharp_corner = 30 * geometry::kPi / 180;  // radians: corners that turn more may stay
+  // The tube takes some ten milliseconds, and up to one for each point: it is tried where the bound
+  // leaves this part of the time to win, and so many seconds with so many more for each point.
+  double tube_wins = 0.02;
+  double tube_starts = 0.25;
+  double tube_costs = 0.0005;
   // So many of the pieces are reverted at once that a long run is timed a few times only.
   std::size_t reverted_share = 4;
 };
@@ -76,7 +81,10 @@ class RunSmoother {
         add_candidates_of(*fair);
         try_simpler(meant);
         if (is_worth_rounding()) try_curve(Method::kFair, curve_request(Method::kFair));
-        if (method == Method::kBest) try_others();
+        if (method == Method::kBest) {
+          try_corners();
+          try_tube();
+        }
       }
     } else if (const auto curve = curve_by(method, curve_request(method))) {
       find_meant((fair ? *fair : *curve).path, meant);
@@ -172,10 +180,9 @@ class RunSmoother {
 
   // The methods of corners: the quick one where it may win time, and those that search for each
   // corner where rounding them has won some.
-  void try_others() {
+  void try_corners() {
     if (options().side != geometry::Side::kBoth) return;
-    const double corners = coarse_part(run(), tolerance_of(run(), options().tolerance_mm));
-    if (!corners_are_worth_trying(corners, bounds_.least_time(), best_time())) return;
+    if (!corners_are_worth_trying(corner_part(), bounds_.least_time(), best_time())) return;
     try_curve(Method::kGuo, curve_request(Method::kGuo));
     for (const Method method : {Method::kOzcan, Method::kTimeOptimal}) {
       if (searches_are_worth_trying(run().points.size(), bounds_.least_time(),
@@ -183,6 +190,24 @@ class RunSmoother {
         try_curve(method, curve_request(method));
       }
     }
+  }
+
+  // Where jerk is limited, and the run is no run of corners, between which the tube has lines.
+  void try_tube() {
+    if (options().side != geometry::Side::kBoth || options().prefer == Prefer::kAccuracy) return;
+    if (context().is_piece() || !std::isfinite(options().machine->max_jerk())) return;
+    if (corner_part() >= kBounds.corners) return;
+    const double worth =
+        std::max(kRun.tube_wins * best_time(),
+                 kRun.tube_starts + kRun.tube_costs * static_cast<double>(run().points.size()));
+    const CurveRequest request = curve_request(Method::kTube);
+    if (best_time() - bounds_.least_time() < worth) return;
+    if (best_time() - straight_time(fair_->curve, request) < worth) return;
+    try_curve(Method::kTube, request);
+  }
+
+  [[nodiscard]] double corner_part() const {
+    return coarse_part(run(), tolerance_of(run(), options().tolerance_mm));
   }
 
   // s, from rest to rest; of a part of a run the times are those between its neighbours.

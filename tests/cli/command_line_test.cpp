@@ -72,7 +72,7 @@ constexpr WrongUsage kWrongUsages[] = {
     {"UnknownForm", "smooth part.nc --target grbl --output splines",
      "possible: auto, curves, arcs, lines"},
     {"UnknownMethod", "smooth part.nc --target grbl --method spline",
-     "possible: best, fair, racing, naseath, guo, ozcan"},
+     "possible: best, fair, racing, tube, naseath, guo, ozcan"},
     {"ToleranceWithoutAValue", "smooth part.nc --target grbl --tolerance", "--tolerance"},
     {"ToleranceWithAComma", "smooth part.nc --target grbl --tolerance 0,01", "not a comma"},
     {"ToleranceOfAnotherUnit", "smooth part.nc --target grbl --tolerance 0.01cm", "0.0005in"},

@@ -287,7 +287,10 @@ TEST(Memory, ThatIsMissingIsToldAndNothingIsWritten) {
     EXPECT_FALSE(folder.has("new.nc"));
     EXPECT_FALSE(folder.has("r.json"));
     const std::string told =
-        folder.shell("( " + script(limit + "smooth_to new.nc part.nc --json -") + "\n)").out;
+        folder
+            .shell("( " + script(limit + "smooth_to new.nc part.nc --json - --report r.html") +
+                   "\n)")
+            .out;
     EXPECT_TRUE(contains(told, "batten-report/1") && contains(told, "\"messages\": [")) << told;
   }
   EXPECT_GT(refused, 0);

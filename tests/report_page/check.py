@@ -267,6 +267,7 @@ class PageCheck:
             expect("times" in self.value("document.getElementById('magnify-text').textContent"), "not magnified")
             self.changes("chart wheel", lambda: browser.wheel("#chart-deviation", 300), "#chart-deviation")
             browser.keys("0")
+        self.region_works()
         if len(self.report["runs"]) > 1:
             if self.value("!!document.getElementById('unfold')"):
                 browser.click("#unfold")
@@ -285,6 +286,62 @@ class PageCheck:
         expect_equal(self.value("document.getElementById('keys').open"), True, "keys are shown")
         browser.keys("\ue00c")
         expect_equal(self.value("document.getElementById('keys').open"), False, "keys are gone")
+
+
+    def region_works(self):
+        """The region of the tolerance: drawn where it is wide enough, in its true width; else the page says why not."""
+        browser = self.browser
+        region = self.value("battenReport.path.region")
+        note = "document.getElementById('region-note').textContent"
+        expect_equal(self.value("document.querySelector('[data-layer=region]').disabled"), region["drawn"] == 0,
+                     "a button for the region")
+        if region["drawn"] == 0:
+            browser.keys("g")
+            expect_equal(self.value("battenReport.settings.region"), False, "no region is shown")
+            return
+        browser.keys("[[[[[[[[[[")
+        # A place of the region in the middle of the picture, eight tolerances wide.
+        self.value("(({toolPath: t, settings}) => { t.fitted = null; t.centre = [t.regionU[0], t.regionV[0]];"
+                   " t.scale = t.width / settings.tolerance / 8; t.draw(); })(battenReport)")
+        self.changes("the region", lambda: browser.click("[data-layer=region]"))
+        expect_equal(self.value(note), "", "the region is seen")
+        browser.keys("]]]]]]]]]]")
+        self.settle()
+        expect("as it is" in self.value(note), "beside a magnified deviation there is no region")
+        browser.keys("[[[[[[[[[[")
+        self.value("battenReport.toolPath.zoom(1e-5)")
+        self.settle()
+        expect("zoom in" in self.value(note), "from afar there is no region")
+        browser.keys("g0")
+        expect_equal(self.pressed("[data-layer=region]"), "false", "the region is gone")
+
+
+class IslandCheck(PageCheck):
+    """Around an island 1 mm wide with 0.1 mm: its region is drawn, with a hole."""
+
+    def all(self):
+        self.browser.open(self.page)
+        self.browser.wait("window.battenReport")
+        self.browser.keys("ng")
+        self.settle()
+        places = {(0.5, 0.07): True, (0.5, -0.04): True, (0.5, 0.13): False, (0.5, 0.5): False}
+        shown = self.browser.run(
+            "const {toolPath: t} = battenReport; t.drawNow(); const { width, height } = t.canvas;"
+            " const pixels = t.context.getImageData(0, 0, width, height).data; return arguments[0].map(([x, y]) => {"
+            " const [right, down] = t.screen(x - t.middle[0], y - t.middle[1]).map((px) => Math.round(px * width / t.width));"
+            " return [...pixels.slice(4 * (down * width + right), 4 * (down * width + right) + 3)]; });", list(places))
+        region = self.value("getComputedStyle(document.documentElement).getPropertyValue('--region')").strip()
+        filled = [int(region[i:i + 2], 16) for i in (1, 3, 5)]
+        expect_equal(dict(zip(places, (colour == filled for colour in shown))), places, "places in the region")
+        expect_equal(self.browser.complaints(), [], "console")
+
+
+def island(scratch):
+    program = scratch / "island.ngc"
+    program.write_text("G21 G90 G17\nG0 X0 Y0 Z0\nG1 X0.5 F600\nX1\nY0.5\nY1\nX0.5\nX0\nY0.5\nY0\nM2\n")
+    new = scratch / "island_new.ngc"
+    new.write_text("G21 G90 G17\nG0 X0 Y0 Z0\nG1 X1 F600\nY1\nX0\nY0.02\nY0\nM2\n")
+    return program, new
 
 
 def cases(source, scratch):
@@ -396,6 +453,10 @@ def check_all(batten, source):
             run(case, lambda: PageCheck(browser, *make_page(batten, program, options, scratch)).all())
         for case, report, page in other_pages(batten, source, scratch):
             run(case, lambda: OtherPageCheck(browser, report, page).all())
+        page, figures = scratch / "island.html", scratch / "island.json"
+        subprocess.run([batten, "verify", *island(scratch), "--tolerance", "0.1", "--force", "--json", figures, "--report", page],
+                       capture_output=True, check=True)
+        run("the region about an island", lambda: IslandCheck(browser, json.loads(figures.read_text()), page).all())
         (scratch / "in").mkdir()
         for name in ("butterfly", "kept_by_rule"):
             shutil.copy(source / "samples" / name / "program.ngc", scratch / "in" / f"{name} #1.ngc")

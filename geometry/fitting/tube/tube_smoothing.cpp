@@ -58,8 +58,13 @@ class TubeSolver {
   [[nodiscard]] BsplineCurve least(int energy, std::function<EnergyWeight(double)> weight) {
     problem_.energy = energy;
     problem_.weight = std::move(weight);
-    return pulled_inside(solve_band(problem_, original_.control_points(), kTubeTuning.gap).curve);
+    const BandCurve found = solve_band(problem_, original_.control_points(), kTubeTuning.gap);
+    visits_ += static_cast<std::size_t>(found.steps) * problem_.samples.size();
+    return pulled_inside(found.curve);
   }
+
+  // Newton steps so far, times the samples of each.
+  [[nodiscard]] std::size_t visits() const { return visits_; }
 
   // The part of the way from the old curve to `moved`, which has its knots, that is inside the
   // tube at every parameter: all of it, if that is.
@@ -90,6 +95,7 @@ class TubeSolver {
   BsplineCurve original_;
   double radius_;
   BandProblem problem_;
+  std::size_t visits_ = 0;
 };
 
 class TubeCandidates {
@@ -117,6 +123,17 @@ class TubeCandidates {
     add_weighted(TubeMethod::kQuick, solver_.original(), kTubeTuning.quick_power);
   }
 
+  void add_few() {
+    add(TubeMethod::kOriginal, solver_.original());
+    add(TubeMethod::kBending, solver_.least(2, {}));
+    const BsplineCurve third = solver_.least(3, {});
+    add(TubeMethod::kThirdDerivative, third);
+    add(TubeMethod::kCurvature, weighted(third, 0));
+    add(TubeMethod::kQuick, weighted(third, kTubeTuning.quick_power));
+  }
+
+  [[nodiscard]] std::size_t visits() const { return solver_.visits(); }
+
   void add_naseath(const NaseathRepairs& repairs, TubeMethod method) {
     NaseathOptions options;
     options.radius = options_.radius;
@@ -135,13 +152,16 @@ class TubeCandidates {
   // speed, du.
   void add_weighted(TubeMethod method, BsplineCurve curve, double power) {
     for (int round = 1; round <= kTubeTuning.rounds; ++round) {
-      const BsplineCurve before = curve;
-      curve = solver_.least(2, [&](double u) {
-        const double ratio = before.curvature_at(u) / slow_curvature_;
-        return weight_at(before, u, std::pow(1 + ratio * ratio, power));
-      });
+      curve = weighted(curve, power);
       if (kTubeTuning.is_taken(round)) add(method, curve);
     }
+  }
+
+  [[nodiscard]] BsplineCurve weighted(const BsplineCurve& before, double power) {
+    return solver_.least(2, [&](double u) {
+      const double ratio = before.curvature_at(u) / slow_curvature_;
+      return weight_at(before, u, std::pow(1 + ratio * ratio, power));
+    });
   }
 
   // Weights rise from round to round where the curvature holds the machine up, until what is left
@@ -248,6 +268,13 @@ std::vector<TubeCandidate> smooth_in_tube(const BsplineCurve& curve, const TubeO
     for (TubeCandidate& candidate : made.found) all.push_back(std::move(candidate));
   }
   return all;
+}
+
+FewInTube few_in_tube(const BsplineCurve& curve, const TubeOptions& options) {
+  check(curve, options);
+  TubeCandidates made(curve, options, 0);
+  made.add_few();
+  return {std::move(made.found), made.visits()};
 }
 
 namespace {

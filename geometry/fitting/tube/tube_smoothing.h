@@ -92,6 +92,20 @@ struct TubeCandidate {
 [[nodiscard]] std::vector<TubeCandidate> smooth_in_tube(const BsplineCurve& curve,
                                                         const TubeOptions& options);
 
+struct FewInTube {
+  std::vector<TubeCandidate> candidates;  // five, the old curve first; the same methods every time
+  // Of all solutions, Newton steps times the samples that each step visits.
+  std::size_t visits = 0;
+};
+
+// The candidates that win most for their cost, on the knots of the curve: the least integrals of
+// |C''|^2 and of |C'''|^2, and after the latter one round of curvature and one of estimated time.
+// Four solutions of solve_band, each of kTubeTuning.watched samples for a span and of at most
+// kBandTuning.max_steps steps. `options.halvings` is not looked at.
+//
+// Throws as smooth_in_tube does.
+[[nodiscard]] FewInTube few_in_tube(const BsplineCurve& curve, const TubeOptions& options);
+
 // Seconds that the machine takes for a curve.
 using CurveTimer = std::function<double(const BsplineCurve&)>;
 

@@ -76,7 +76,7 @@ function readPath(columns) {
     speedBefore: scaled(summed(unpacked(columns.speed_before)), columns.speed_unit),
     speedAfter: scaled(summed(unpacked(columns.speed_after)), columns.speed_unit),
     way: new Float64Array(n),
-    length: 0, worst: -1, fastest: 0,
+    length: 0, worst: -1, fastest: 0, region: readRegion(columns),
   };
   const has = unpackedRuns(columns.has_offset, n);
   const offsets = [columns.dx, columns.dy, columns.dz].map(unpacked);
@@ -96,6 +96,15 @@ function readPath(columns) {
     path.way[i] = path.length;
   }
   return path;
+}
+
+// The polygons of the region of the tolerance: corners one after the other, and how many each has.
+function readRegion({ region, unit_mm: unit }) {
+  const place = (text) => summed(unpacked(text)).map((steps) => steps * unit);
+  return {
+    drawn: region.drawn, inSpace: region.in_space, leftOut: region.left_out, mostEdges: region.most_edges,
+    sizes: unpacked(region.sizes), x: place(region.x), y: place(region.y), z: place(region.z),
+  };
 }
 
 // The first and the last vertex of each run, in the order of the report.

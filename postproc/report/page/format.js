@@ -94,7 +94,7 @@ function sharpContext(canvas) {
 function themeColours() {
   const style = getComputedStyle(document.documentElement);
   const colour = (name) => style.getPropertyValue(`--${name}`).trim();
-  const names = ['card', 'ink', 'soft', 'line', 'fill', 'accent', 'old', 'now', 'kept', 'rapid', 'mark', 'bad'];
+  const names = ['card', 'ink', 'soft', 'line', 'fill', 'accent', 'old', 'now', 'kept', 'rapid', 'mark', 'bad', 'region', 'region-edge'];
   return Object.fromEntries(names.map((name) => [name, colour(name)]));
 }
 

@@ -102,7 +102,7 @@ function smoothPage(report, path, columns) {
     pairs.push(...vouched(options.words));
     if (report.corner_mm > 0) pairs.splice(2, 0, ['Corners', `at most ${lengthText(report.corner_mm, 5)} from the new path`]);
     const { file } = report.output;
-    return [facts(pairs), ...proofNotes(report.proved, 'The new text could not be shown to keep the tolerance; nothing was written.', columns),
+    return [facts(pairs), ...proofNotes(report.proved, 'The new text could not be shown to keep the tolerance; nothing was written.', columns, path),
       ...(file && file !== '-' ? again(`batten verify ${shellWord(report.input.file)} ${shellWord(file)} --tolerance ${toleranceWord(options)}${band ? ' --tolerance-kind band' : ''}`) : [])];
   };
 
@@ -140,14 +140,23 @@ function comparedFact(columns) {
     + `${count(columns.events ?? 0, 'acting word or block', 'acting words and blocks')}`];
 }
 
-function proofNotes(proved, otherwise, columns) {
+function proofNotes(proved, otherwise, columns, path) {
   const notes = [
     element('p', {}, proved ? 'The new text was read as a control would read it, and compared with the old program. Between two neighbouring pairs both '
       + 'paths run straight, so no place between them is further off than the pairs. All other blocks do the same.' : otherwise),
     element('p', {}, 'Not part of the proof is what the control itself adds, such as blending at corners. Cutting times are predictions of a model.'),
   ];
   if (columns.stretches_not_shown > 0) notes.push(element('p', {}, `${columns.stretches_not_shown} compared stretches are not drawn on this page.`));
-  return notes;
+  return [...notes, ...regionNotes(path.region).map((text) => element('p', {}, text))];
+}
+
+// Of which changed sections the page draws no region, and why.
+function regionNotes({ drawn, inSpace, leftOut, mostEdges }) {
+  const of = (n, text) => (n ? [`${count(n, 'changed section', 'changed sections')} ${text}.`] : []);
+  if (!drawn && !inSpace && !leftOut) return ['Nothing was compared.'];
+  return [
+    ...of(inSpace, 'without a region: it is drawn of sections that lie in one plane across an axis'),
+    ...of(leftOut, `without a region: a page draws it of ${thousands(mostEdges)} lines of the old program at most`)];
 }
 
 function verifyPage(report, path, columns) {
@@ -174,7 +183,7 @@ function verifyPage(report, path, columns) {
     proof: () => [facts([['Verdict', report.proved ? 'proved' : 'NOT PROVED'],
       ['Greatest deviation', `at most ${lengthText(report.deviation_mm, 5)}${place}`],
       ['Allowed', `${lengthText(report.tolerance_mm, 5)}, ${band ? 'in order, band reading' : 'both ways and in order'}`], comparedFact(columns), ...vouched(report.words)]),
-    ...proofNotes(report.proved, 'The new program could not be shown to do what the old one does.', columns)],
+    ...proofNotes(report.proved, 'The new program could not be shown to do what the old one does.', columns, path)],
     rows, reasons: [], compared: true, understood: true, tolerance: report.tolerance_mm, machine: '', colours: ['deviation', 'status'],
     isRewritten: (i) => path.step[i] === STEP.rewritten, statusWords: ['changed', 'the same'],
     tableTitle: 'Changed sections', tableNote: 'Those that are farthest off first.', filters: [],

@@ -9,7 +9,7 @@
   const ranges = verticesOfRuns(path, page.rows.length);
   const colours = page.colours.filter((name) => name !== 'speed' || path.fastest > 0);
   const settings = {
-    old: page.compared, now: true, rapids: false, colour: colours[0] ?? 'status', magnify: 1, tolerance: page.tolerance,
+    old: page.compared, now: true, rapids: false, region: false, colour: colours[0] ?? 'status', magnify: 1, tolerance: page.tolerance,
     isRewritten: page.isRewritten, compared: page.compared,
   };
   units.inch = data.units === 'inch';
@@ -59,7 +59,19 @@
     if (settings.now && settings.colour === 'status') parts.push(row(colours.now, page.statusWords[0]), row(colours.kept, page.statusWords[1]));
     if (settings.old) parts.push(row(colours.old, 'old path'));
     if (settings.rapids) parts.push(row(colours.rapid, 'rapids', true));
+    if (settings.region) {
+      parts.push(element('div', { className: 'row' }, element('i', { className: 'area' }), 'region of the tolerance',
+        element('span', { id: 'region-note' })));
+    }
     byId('legend').replaceChildren(...parts);
+    drawRegionNote();
+  }
+
+  // It changes with the scale of the picture.
+  function drawRegionNote() {
+    const note = byId('region-note');
+    const why = toolPath.whyNoRegion();
+    if (note) note.textContent = why && `(${why})`;
   }
 
   function drawReadout() {
@@ -176,6 +188,7 @@
 
   function toggle(layer) {
     if (!page.compared && layer !== 'rapids') return;
+    if (layer === 'region' && !path.region.drawn) return;
     settings[layer] = !settings[layer];
     drawLegend();
     drawButtons();
@@ -202,6 +215,15 @@
     mark({ vertex, share: 1 });
   }
 
+  // What a message is about, so near that the tolerance is to be seen.
+  function goToLine(line) {
+    const vertex = path.oldLine.findIndex((of, i) => of >= line && path.step[i] >= STEP.copied);
+    if (vertex < 0) return;
+    toolPath.goTo(vertex, settings.tolerance * byId('canvas').getBoundingClientRect().width / 30);
+    mark({ vertex, share: 0.5 });
+    byId('path').scrollIntoView({ block: 'start' });
+  }
+
   function showAll() {
     choose(-1);
     mark(null);
@@ -218,6 +240,7 @@
     ['w', 'go to the greatest deviation', { w: goToWorst }],
     ['[ ]', 'deviation drawn smaller, larger', { '[': () => nudgeMagnify(-0.1), ']': () => nudgeMagnify(0.1) }],
     ['o n r', 'old path, new path, rapids', { o: () => toggle('old'), n: () => toggle('now'), r: () => toggle('rapids') }],
+    ['g', 'region of the tolerance', { g: () => toggle('region') }],
     ['c', 'next colour', { c: nextColour }],
     ['j k', 'next run, run before', { j: () => stepRun(1), k: () => stepRun(-1) }],
     ['u t', 'millimetres or inches, light or dark', { u: toggleUnits, t: () => setTheme(isDark() ? 'light' : 'dark') }],
@@ -346,6 +369,10 @@
       pick(rowOf(event));
       body.querySelector(`[data-run="${index}"]`)?.focus();
     });
+    byId('messages').addEventListener('click', (event) => {
+      const { line } = event.target.dataset;
+      if (line) goToLine(Number(line));
+    });
     byId('strip').addEventListener('click', (event) => {
       const box = byId('strip').getBoundingClientRect();
       const index = runs.runAtStrip(event.clientX - box.left, event.clientY - box.top);
@@ -364,6 +391,7 @@
       actions[event.key]();
     });
     listenToPath();
+    toolPath.onDrawn = drawRegionNote;
     charts.onMark = mark;
     charts.onPick = (place) => { if (place) { toolPath.centre = [toolPath.u[place.vertex], toolPath.v[place.vertex]]; mark(place); } };
     const resized = new ResizeObserver(() => {
@@ -398,6 +426,9 @@
   byId('key-list').replaceChildren(...KEYS.flatMap(([keys, text]) => [
     element('dt', {}, ...keys.split(' ').map((key) => (key.length === 1 ? element('kbd', {}, key) : `${key} `))), element('dd', {}, text)]));
   for (const control of document.querySelectorAll('#path .head button, #path .head select, #path .head input')) control.disabled = isEmpty;
+  const regionButton = document.querySelector('[data-layer=region]');
+  regionButton.disabled = !path.region.drawn;
+  regionButton.title = ['The region of the tolerance (g).', ...regionNotes(path.region)].join(' ');
   const colourNames = { deviation: 'deviation', speed: 'predicted speed', status: page.statusWords.join(' or ') };
   byId('colour').replaceChildren(...colours.map((name) => element('option', { value: name }, colourNames[name])));
   for (const part of document.querySelectorAll('[data-of-two]')) part.hidden = !page.compared;

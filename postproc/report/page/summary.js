@@ -66,7 +66,8 @@ const MESSAGES_AT_ONCE = 50;
 
 function messageItem(d) {
   return element('li', { className: d.severity }, element('b', {}, `${d.severity} `),
-    element('span', { className: 'mono' }, `${d.line}:${d.column} ${d.id}`), ` \u2013 ${d.message}`);
+    element('span', { className: 'mono' }, element('button', { type: 'button', title: 'Show it on the path', 'data-line': d.line }, `${d.line}:${d.column}`),
+      ` ${d.id}`), ` \u2013 ${d.message}`);
 }
 
 function messageList(messages) {

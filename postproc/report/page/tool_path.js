@@ -10,6 +10,7 @@ const VIEWS = {
 const LEVELS = 16;
 const FINE = 0.6;    // px between points that are drawn
 const COARSE = 2.5;  // px while the path moves under the hand
+const LEAST_WIDTH = 4;  // px of the tolerance band from which its region is to be seen
 
 class ToolPath {
   constructor(canvas, path, settings) {
@@ -23,6 +24,8 @@ class ToolPath {
     this.v = new Float64Array(path.n);
     this.du = new Float32Array(path.n);
     this.dv = new Float32Array(path.n);
+    this.regionU = new Float64Array(path.region.x.length);  // the same of its corners
+    this.regionV = new Float64Array(path.region.x.length);
     this.segments = new Float32Array(4 * (path.n + 1));
     this.levels = new Uint8Array(path.n + 1);
     this.next = new Int32Array(path.n + 1);
@@ -63,6 +66,13 @@ class ToolPath {
       this.v[i] = (-s * px + c * py) * away + (z[i] - mz) * up;
       this.du[i] = c * dx[i] + s * dy[i];
       this.dv[i] = (-s * dx[i] + c * dy[i]) * away + dz[i] * up;
+    }
+    const { region } = this.path;
+    for (let i = 0; i < region.x.length; i++) {
+      const px = region.x[i] - mx;
+      const py = region.y[i] - my;
+      this.regionU[i] = c * px + s * py;
+      this.regionV[i] = (-s * px + c * py) * away + (region.z[i] - mz) * up;
     }
   }
 
@@ -156,6 +166,7 @@ class ToolPath {
     this.height = sharp.height;
     this.colours = themeColours();
     this.fine = this.moving && this.path.n > 20000 ? COARSE : FINE;
+    if (this.settings.region && !this.whyNoRegion()) this.drawRegion();
     if (this.settings.rapids) this.drawRapids();
     if (this.settings.old) this.drawOld();
     if (this.settings.now) this.drawNew();
@@ -218,6 +229,54 @@ class ToolPath {
     context.lineJoin = 'round';
     context.stroke();
     context.setLineDash([]);
+  }
+
+  // The region has its true width, so it says nothing beside a deviation that is drawn larger.
+  whyNoRegion() {
+    if (this.settings.magnify > 1.05) return 'only beside a deviation that is drawn as it is';
+    if (2 * this.settings.tolerance * this.scale < LEAST_WIDTH) return 'zoom in to see it';
+    return '';
+  }
+
+  // Of regions that lie over each other, such as those before and after a change of feed, the holes
+  // are what is in none of them: outer polygons turn to the one side, holes to the other.
+  drawRegion() {
+    const { context, path: { region } } = this;
+    context.beginPath();
+    let end = 0;
+    for (const size of region.sizes) {
+      const start = end;
+      end += size;
+      if (!this.isSeen(start, end)) continue;
+      let [x0, y0] = this.screen(this.regionU[start], this.regionV[start]);
+      context.moveTo(x0, y0);
+      for (let i = start + 1; i < end; i++) {
+        const [x, y] = this.screen(this.regionU[i], this.regionV[i]);
+        if (Math.abs(x - x0) + Math.abs(y - y0) < this.fine) continue;
+        context.lineTo(x, y);
+        [x0, y0] = [x, y];
+      }
+      context.closePath();
+    }
+    context.fillStyle = this.colours.region;
+    context.fill('nonzero');
+    context.strokeStyle = this.colours['region-edge'];
+    context.lineWidth = 1;
+    context.stroke();
+  }
+
+  // Whether the box of these corners of the region meets the picture.
+  isSeen(start, end) {
+    let [left, right, low, high] = [Infinity, -Infinity, Infinity, -Infinity];
+    for (let i = start; i < end; i++) {
+      left = Math.min(left, this.regionU[i]);
+      right = Math.max(right, this.regionU[i]);
+      low = Math.min(low, this.regionV[i]);
+      high = Math.max(high, this.regionV[i]);
+    }
+    const [x0, y0] = this.screen(left, high);
+    const [x1, y1] = this.screen(right, low);
+    return x1 >= 0 && y1 >= 0 && x0 <= this.width && y0 <= this.height;
   }
 
   drawRapids() {

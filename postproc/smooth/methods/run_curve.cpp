@@ -18,8 +18,10 @@
 #include "geometry/fitting/fair/fair_measure.h"
 #include "geometry/fitting/naseath/naseath.h"
 #include "geometry/fitting/one_sided/one_sided_fair.h"
+#include "geometry/fitting/tube/tube_smoothing.h"
 #include "geometry/path/curve_pieces.h"
 #include "geometry/path/joined_curve.h"
+#include "postproc/machine/planner/feed_plan.h"
 
 namespace batten::postproc {
 
@@ -209,7 +211,7 @@ void round_seam(SmoothCurve& path, const CurveRequest& request) {
   }
 }
 
-// --- Naseath's tube about a spline, for a run of lines
+// --- a tube about a spline, for a run of lines: Naseath's, and the least energies in it
 // --------------------------------------------
 
 struct TubeTuning {
@@ -220,11 +222,13 @@ struct TubeTuning {
   // Control points that stay at both ends of a part: its ends, or tangents and curvatures, too.
   int hold_position = 1;
   int hold_curvature = 3;
+  // Nodes of the plans that times are compared by: a third of what is usual, good to a permille.
+  double density = 2;
 };
 constexpr TubeTuning kTube;
 
 // A part of the fit between two cuts.
-struct NaseathSection {
+struct TubeSection {
   double from;
   double to;
   bool straight;        // a line of the program: it stays
@@ -242,7 +246,7 @@ std::vector<double> corners_of(const BsplineCurve& curve) {
   return corners;
 }
 
-std::vector<NaseathSection> sections_of(const BsplineCurve& curve, bool closed) {
+std::vector<TubeSection> sections_of(const BsplineCurve& curve, bool closed) {
   const auto lines = geometry::CurvePieces(curve, curve.first(), curve.last()).straight_runs();
   const std::vector<double> corners = corners_of(curve);
   std::vector<double> cuts = {curve.first(), curve.last()};
@@ -257,7 +261,7 @@ std::vector<NaseathSection> sections_of(const BsplineCurve& curve, bool closed) 
     if (u == curve.first() || u == curve.last()) return closed;
     return !std::binary_search(corners.begin(), corners.end(), u);
   };
-  std::vector<NaseathSection> sections;
+  std::vector<TubeSection> sections;
   std::size_t line = 0;
   for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
     while (line < lines.size() && lines[line].to <= cuts[i]) ++line;
@@ -271,37 +275,113 @@ std::vector<NaseathSection> sections_of(const BsplineCurve& curve, bool closed) 
 // What the measured deviation of a spline fitted to the run leaves is the radius of the tube. Lines
 // and kept corners of the fit stay; the parts between them are smoothed, each with the tangent and
 // curvature that it has where it meets a line.
-std::optional<SmoothCurve> naseath_curve(std::span<const Point3> run, const CurveRequest& request,
-                                         bool literal) {
+struct TubeFit {
+  SmoothCurve path;
+  double radius = 0;  // mm
+  std::vector<TubeSection> sections;
+
+  [[nodiscard]] BsplineCurve part(const TubeSection& section) const {
+    return path.curve.part(section.from, section.to);
+  }
+  [[nodiscard]] static int held_points(const TubeSection& section) {
+    return section.meets_smoothly ? kTube.hold_curvature : kTube.hold_position;
+  }
+  // `moved`: mm, the greatest displacement of the parts.
+  [[nodiscard]] SmoothCurve with(const std::vector<BsplineCurve>& parts, double moved) const {
+    SmoothCurve smoothed = path;
+    smoothed.curve = geometry::joined(parts);
+    smoothed.deviation += moved;
+    smoothed.noise = 0;
+    smoothed.rounds = 0;
+    smoothed.edge_deviations.clear();
+    return smoothed;
+  }
+};
+
+std::optional<TubeFit> tube_fit(std::span<const Point3> run, const CurveRequest& request) {
   CurveRequest fit = request;
   fit.tolerance = kTube.fit_part * request.tolerance;
   fit.scatter = 0;
   fit.accurate = true;
   std::optional<SmoothCurve> path = fair_curve(run, fit);
   if (!path || !(path->deviation < request.tolerance)) return std::nullopt;
+  const bool closed = (run.front() - run.back()).norm() <= geometry::kSamePlace;
+  TubeFit tube{std::move(*path), 0, {}};
+  tube.radius = request.tolerance - tube.path.deviation;
+  tube.sections = sections_of(tube.path.curve, closed);
+  return tube;
+}
 
+std::optional<SmoothCurve> naseath_curve(std::span<const Point3> run, const CurveRequest& request,
+                                         bool literal) {
+  const auto tube = tube_fit(run, request);
+  if (!tube) return std::nullopt;
   geometry::NaseathOptions options;
-  options.radius = request.tolerance - path->deviation;
+  options.radius = tube->radius;
   options.max_passes = kTube.passes;
   if (literal) options.repairs = geometry::NaseathRepairs::none();
-  const bool closed = (run.front() - run.back()).norm() <= geometry::kSamePlace;
   double moved = 0;
   std::vector<BsplineCurve> parts;
-  for (const NaseathSection& section : sections_of(path->curve, closed)) {
-    BsplineCurve part = path->curve.part(section.from, section.to);
-    if (!section.straight) {
-      options.held_points = section.meets_smoothly ? kTube.hold_curvature : kTube.hold_position;
-      geometry::NaseathResult smoothed = geometry::smooth_naseath(part, options);
-      moved = std::max(moved, smoothed.displacement);
-      part = std::move(smoothed.curve);
-    }
-    parts.push_back(std::move(part));
+  for (const TubeSection& section : tube->sections) {
+    parts.push_back(tube->part(section));
+    if (section.straight) continue;
+    options.held_points = TubeFit::held_points(section);
+    geometry::NaseathResult smoothed = geometry::smooth_naseath(parts.back(), options);
+    moved = std::max(moved, smoothed.displacement);
+    parts.back() = std::move(smoothed.curve);
   }
-  path->curve = geometry::joined(parts);
-  path->deviation += moved;
-  path->noise = 0;
-  path->rounds = 0;
-  return path;
+  return tube->with(parts, moved);
+}
+
+// s, from rest to rest.
+double planned_time(const geometry::Path& path, const CurveRequest& request) {
+  KinematicPathLimits limits(request.limits);
+  limits.jerk = limits.jerk.cwiseMin(request.jerk);
+  return plan_feed(path, limits, {}, kTube.density).time;
+}
+
+// All parts of the fit are smoothed in the same way: the one that takes the least time for the
+// whole.
+std::optional<SmoothCurve> tube_curve(std::span<const Point3> run, const CurveRequest& request) {
+  if (!can_race(request.limits)) return std::nullopt;
+  const auto tube = tube_fit(run, request);
+  if (!tube) return std::nullopt;
+  geometry::TubeOptions options;
+  options.radius = tube->radius;
+  options.feed = request.limits.feed;
+  options.acceleration = request.limits.acceleration.minCoeff();
+  struct Way {
+    std::vector<BsplineCurve> parts;
+    double moved = 0;  // mm
+  };
+  std::vector<Way> ways;
+  std::vector<BsplineCurve> straight_before;  // the first part that bends
+  for (const TubeSection& section : tube->sections) {
+    const BsplineCurve part = tube->part(section);
+    if (section.straight) {
+      if (ways.empty()) straight_before.push_back(part);
+      for (Way& way : ways) way.parts.push_back(part);
+      continue;
+    }
+    options.held_points = TubeFit::held_points(section);
+    const auto found = geometry::few_in_tube(part, options).candidates;
+    if (ways.empty()) ways.assign(found.size(), {straight_before, 0});
+    for (std::size_t k = 0; k < found.size(); ++k) {
+      ways[k].parts.push_back(found[k].curve);
+      ways[k].moved = std::max(ways[k].moved, found[k].displacement);
+    }
+  }
+  if (ways.empty()) return tube->path;
+  std::optional<SmoothCurve> best;
+  double least = std::numeric_limits<double>::infinity();
+  for (const Way& way : ways) {
+    SmoothCurve made = tube->with(way.parts, way.moved);
+    const double time = planned_time(geometry::beziers_of(made.curve), request);
+    if (!(time < least)) continue;
+    least = time;
+    best = std::move(made);
+  }
+  return best;
 }
 
 }  // namespace
@@ -315,6 +395,8 @@ std::optional<RunCurve> curve_of(Method method, std::span<const Point3> run,
         return fair_curve(run, request);
       case Method::kTimeOptimal:
         return time_optimal_curve(run, request);
+      case Method::kTube:
+        return tube_curve(run, request);
       case Method::kNaseath:
         return naseath_curve(run, request, false);
       case Method::kNaseathLiteral:
@@ -340,6 +422,14 @@ std::optional<RunCurve> curve_of(Method method, std::span<const Point3> run,
     round_seam(*found, request);
   }
   return RunCurve{method, *std::move(found)};
+}
+
+double straight_time(const BsplineCurve& curve, const CurveRequest& request) {
+  double length = 0;
+  for (const geometry::PathPiece& piece : geometry::beziers_of(curve)) {
+    length += geometry::length_of(piece);
+  }
+  return planned_time({geometry::Line{Point3::Zero(), Point3(length, 0, 0)}}, request);
 }
 
 double greatest_curvature(std::span<const Point3> p) {

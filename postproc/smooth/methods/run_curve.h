@@ -60,6 +60,11 @@ struct CurveRequest {
 [[nodiscard]] std::optional<geometry::SmoothCurve> fair_curve(std::span<const geometry::Point3> run,
                                                               const CurveRequest& request);
 
+// s: from rest to rest along a straight line as long as the curve. No curve of that length takes
+// less on a machine with the feed, acceleration and jerk of the request.
+[[nodiscard]] double straight_time(const geometry::BsplineCurve& curve,
+                                   const CurveRequest& request);
+
 // 1/mm: the greatest of the circles through three neighbouring vertices.
 [[nodiscard]] double greatest_curvature(std::span<const geometry::Point3> points);
 

@@ -259,5 +259,17 @@ TEST(BandOutline, OfNothingIsNothing) {
   EXPECT_TRUE(band_outline(std::vector<Point2>{{1, 1}, {1, 1}}, 0.1).empty());
 }
 
+// Rounding lifts one vertex of the ring by the last printed digit: its two edges are in no plane,
+// and the rest ends in the place where it begins.
+TEST(NewCrossing, IsNotWhereARingClosesThatLeftThePlane) {
+  std::vector<Point2> ring = arc_points({0, 0}, 5, 0, 2 * pi, 60);
+  ring.back() = ring.front();
+  const Path before = path_at(ring, 3);
+  Path after = before;
+  std::get<Line>(after[30]).end.z() += 1e-4;
+  std::get<Line>(after[31]).start.z() += 1e-4;
+  EXPECT_TRUE(new_crossings(before, after, 0.05).empty());
+}
+
 }  // namespace
 }  // namespace batten::geometry

@@ -100,6 +100,19 @@ TEST_F(HtmlReport, DrawsCurvesOfTheTarget) {
   EXPECT_EQ(path["stretches_not_shown"], 0);
 }
 
+TEST_F(HtmlReport, DrawsTheRegionOfWhatIsFlat) {
+  options_.decimals = gcode::Decimals{};
+  source_ = gcode::SourceText("part.nc", bend_program());
+  result_ = smooth_program(source_, options_, {});
+  ASSERT_TRUE(result_.proved);
+  const Json region = data()["path"]["region"];
+  EXPECT_EQ(region["drawn"], 1);
+  EXPECT_EQ(region["in_space"], 0);
+  EXPECT_EQ(region["left_out"], 0);
+  EXPECT_EQ(region["most_edges"], kMostRegionEdges);
+  EXPECT_GT(region["x"].get<std::string>().size(), region["sizes"].get<std::string>().size());
+}
+
 TEST_F(HtmlReport, IsMadeOfAProgramThatIsNotUnderstoodToo) {
   result_ = SmoothResult();
   EXPECT_EQ(data()["path"]["count"], 0);

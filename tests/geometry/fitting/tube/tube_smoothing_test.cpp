@@ -50,6 +50,26 @@ double sampled_displacement(const BsplineCurve& a, const BsplineCurve& b) {
   return most;
 }
 
+// What docs/algorithms/methods.md says of the effort: four solutions of at most 200 steps each,
+// with six samples for a span, however many spans there are.
+TEST(FewInTube, StayInTheTubeForABoundedEffort) {
+  for (const unsigned seed : {1, 4, 6, 9}) {
+    for (const int halvings : {0, 4}) {
+      const BsplineCurve curve = with_spans_halved(random_curve(seed), halvings);
+      const double radius = radius_for(seed);
+      const FewInTube few = few_in_tube(curve, tube(radius));
+      ASSERT_EQ(few.candidates.size(), 5U);
+      EXPECT_EQ(few.candidates.front().method, TubeMethod::kOriginal);
+      for (const TubeCandidate& candidate : few.candidates) {
+        EXPECT_LE(sampled_displacement(curve, candidate.curve), radius * (1 + 1e-9));
+      }
+      const std::size_t spans = curve.breakpoints().size() - 1;
+      EXPECT_GT(few.visits, 4 * 6 * spans);
+      EXPECT_LE(few.visits, 4 * 200 * (6 * spans + 1));
+    }
+  }
+}
+
 TEST(SmoothInTube, TheOldCurveComesFirstAndAllStayInTheTubeAtEveryParameter) {
   for (const unsigned seed : {1, 4, 6}) {  // radii of 0.003, 0.1 and 1 mm
     const BsplineCurve curve = random_curve(seed);

@@ -4,11 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <vector>
 
+#include "geometry/path/parameter_samples.h"
 #include "postproc/smooth/selection/selection.h"
 #include "tests/support/interpreted.h"
 #include "tests/support/machine_limits.h"
 #include "tests/support/method_cases.h"
+#include "tests/support/naseath_cases.h"
 #include "tests/support/wavy_programs.h"
 
 namespace batten::postproc {
@@ -160,6 +164,39 @@ TEST(BestMethod, IsNotSlowerThanAnyOnAStarAndThreePerCentFasterThanGuoLiteral) {
   for (const Method method :
        {Method::kFair, Method::kGuo, Method::kOzcan, Method::kTimeOptimal, Method::kNaseath}) {
     EXPECT_LT(best, 1.01 * time_of_star(method, Form::kAuto)) << name_of(method);
+  }
+}
+
+// Naseath's noisy line at 24 m/min on his machine, which limits its jerk, or on the same without.
+SmoothResult best_of_noisy_line(double jerk) {
+  Machine machine = *find_machine("high-speed");
+  set_xyz(machine, &AxisLimits::velocity, 400);
+  set_xyz(machine, &AxisLimits::acceleration, 4000);
+  set_xyz(machine, &AxisLimits::jerk, jerk);
+  const geometry::BsplineCurve curve = geometry::curve_of_case("tc5b");
+  std::vector<geometry::Point3> points;
+  for (const auto& sample : geometry::parameter_samples(curve, 8)) {
+    points.push_back(curve.point_at(sample.parameter));
+  }
+  SmoothOptions options = options_with(Method::kBest, "siemens", 0.125);
+  options.machine = &machine;
+  return smoothed(program_through(points, 24000), options);
+}
+
+TEST(BestMethod, TakesTheTubeWhereJerkIsLimitedAndItsBoundLeavesMuchToWin) {
+  const SmoothResult result = best_of_noisy_line(20000);
+  EXPECT_TRUE(result.proved);
+  const RunReport& run = rewritten_run(result);
+  EXPECT_EQ(run.method, "tube");
+  const auto fair = std::ranges::find(run.methods, "fair", &MethodTime::method);
+  ASSERT_NE(fair, run.methods.end());
+  EXPECT_LT(run.time_after_s, 0.95 * fair->time_s);
+}
+
+TEST(BestMethod, DoesNotTryTheTubeWhereNothingLimitsJerk) {
+  const SmoothResult result = best_of_noisy_line(std::numeric_limits<double>::infinity());
+  for (const RunReport& run : result.runs) {
+    EXPECT_EQ(std::ranges::find(run.methods, "tube", &MethodTime::method), run.methods.end());
   }
 }
 

@@ -10,6 +10,8 @@
 
 #include "geometry/distance/path_distance.h"
 #include "geometry/path/curve_pieces.h"
+#include "geometry/path/joined_curve.h"
+#include "postproc/machine/planner/feed_plan.h"
 #include "postproc/smooth/methods/run_curve.h"
 #include "tests/support/method_cases.h"
 #include "tests/support/paths.h"
@@ -194,6 +196,7 @@ INSTANTIATE_TEST_SUITE_P(Methods, EveryMethod,
                                          NamedMethod{Method::kGuoLiteral, "GuoLiteral"},
                                          NamedMethod{Method::kOzcanUsual, "OzcanUsual"},
                                          NamedMethod{Method::kOzcan, "Ozcan"},
+                                         NamedMethod{Method::kTube, "Tube"},
                                          NamedMethod{Method::kTimeOptimal, "Racing"}),
                          [](const auto& test) { return test.param.name; });
 
@@ -210,6 +213,30 @@ TEST(MethodCurves, OfGuoUsesAllOfTheToleranceAndTheLiteralOneHalf) {
   const std::vector<Point3> star = geometry::star_path();
   EXPECT_NEAR(curve_of(Method::kGuo, star, request_with(0.05))->path.deviation, 0.05, 1e-9);
   EXPECT_NEAR(curve_of(Method::kGuoLiteral, star, request_with(0.05))->path.deviation, 0.025, 1e-9);
+}
+
+// A wave that a fit follows within a quarter of the tolerance takes less time where the curve may
+// go through all of it.
+TEST(MethodCurves, OfTheTubeTakesLessTimeThanFair) {
+  std::vector<Point3> points;
+  for (int i = 0; i <= 160; ++i) {
+    const double a = 0.05 * i;
+    points.emplace_back(30 * std::cos(a / 2), 30 * std::sin(a / 2) + 0.1 * std::sin(9 * a), 0);
+  }
+  CurveRequest request = request_with(0.15);
+  request.limits.feed = 400;
+  request.limits.speed.setConstant(400);
+  request.limits.acceleration.setConstant(4000);
+  request.limits.jerk.setConstant(20000);
+  request.jerk = 20000;
+  const auto time = [&](Method method) {
+    const auto made = curve_of(method, points, request);
+    return plan_feed(geometry::beziers_of(made->path.curve), KinematicPathLimits(request.limits))
+        .time;
+  };
+  const double tube = time(Method::kTube);
+  EXPECT_LT(tube, 0.95 * time(Method::kFair));
+  EXPECT_LE(straight_time(curve_of(Method::kTube, points, request)->path.curve, request), tube);
 }
 
 // A line with noise of 0.02 mm bends less when its control points may move by 0.08 mm.
