@@ -376,9 +376,10 @@ std::array<bool, 3> moved_axes(const geometry::BsplineCurve& curve, const Point3
   return moved;
 }
 
-// Where the curve ends that the control reads in these lines, and its feed.
+// The curve that the control reads in these lines, where it ends, and its feed.
 struct ReadAgain {
   Position end;
+  geometry::Path pieces;
   std::optional<double> feed;
 };
 
@@ -388,12 +389,13 @@ std::optional<ReadAgain> read_again(const std::string& text, std::size_t lines,
   Diagnostics ignored;
   const CurveFormat& format = *control.curves;
   const Program program = parse(SourceText("", text), control.language, ignored);
-  ReadAgain read{start.position, {}};
+  ReadAgain read{start.position, {}, {}};
   for (std::uint32_t block = 0; block < lines;) {
     const CurveResult result = format.read(program, block, {read.end, start.units});
     const auto* reading = std::get_if<CurveReading>(&result);
     if (reading == nullptr || reading->blocks == 0 || reading->motions.empty()) return {};
-    read.end.mm = geometry::end_point(reading->motions.back().piece);
+    for (const CurveMotion& motion : reading->motions) read.pieces.push_back(motion.piece);
+    read.end.mm = geometry::end_point(read.pieces.back());
     if (reading->feed) read.feed = reading->feed;
     block += reading->blocks;
   }
@@ -402,9 +404,10 @@ std::optional<ReadAgain> read_again(const std::string& text, std::size_t lines,
 
 }  // namespace
 
-bool Writer::curve_to(const geometry::BsplineCurve& curve, double feed, int last_decimals) {
+std::optional<geometry::Path> Writer::curve_to(const geometry::BsplineCurve& curve, double feed,
+                                               int last_decimals) {
   const CurveFormat* format = control_.curves;
-  if (format == nullptr || !may_start(*format, state_.modal)) return false;
+  if (format == nullptr || !may_start(*format, state_.modal)) return std::nullopt;
   CurveSetting setting;
   setting.units = state_.modal.units;
   setting.places = coordinates_;
@@ -415,26 +418,26 @@ bool Writer::curve_to(const geometry::BsplineCurve& curve, double feed, int last
   setting.axes = moved_axes(curve, setting.start);
   if (format->names_all_axes) setting.axes = {true, true, true};
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (setting.axes[axis] && !state_.position.known[axis]) return false;
+    if (setting.axes[axis] && !state_.position.known[axis]) return std::nullopt;
   }
   if (!feed_is_said(feed)) setting.feed = feed;
   setting.blanks = control_.blanks;
 
   const CurveWriting written = format->write(curve, setting);
   const auto* lines = std::get_if<CurveLines>(&written);
-  if (lines == nullptr) return false;
+  if (lines == nullptr) return std::nullopt;
   std::string text;
   for (const std::string& line : *lines) {
     text += line;
     text += line_end_;
   }
-  const auto read = read_again(text, lines->size(), control_, {state_.position, setting.units});
-  if (!read) return false;
+  auto read = read_again(text, lines->size(), control_, {state_.position, setting.units});
+  if (!read) return std::nullopt;
   text_ += text;
   state_.position = read->end;
   state_.modal.motion = MotionMode::kOther;
   if (read->feed) state_.modal.feed = *read->feed * unit_;
-  return true;
+  return std::move(read->pieces);
 }
 
 void Writer::end_curve() {

@@ -49,10 +49,12 @@ class Writer {
   // A clamped cubic curve in the control's own words (Control::curves), from the writer's position,
   // which is the curve's first point but for rounding. Axes that it does not move are not named,
   // unless the control wants them. `last_decimals`: of the last place, where they are more than
-  // coordinates have. What is written is read again, for the writer's position. Returns false and
-  // writes nothing where the control has no curves, refuses this one or the state, or does not read
-  // what it wrote. Afterwards the motion mode is MotionMode::kOther: what follows says its own.
-  [[nodiscard]] bool curve_to(const geometry::BsplineCurve& curve, double feed, int last_decimals);
+  // coordinates have. What is written is read again: returned are the pieces that the printed
+  // numbers say. Returns and writes nothing where the control has no curves, refuses this one or
+  // the state, or does not read what it wrote. Afterwards the motion mode is MotionMode::kOther:
+  // what follows says its own.
+  [[nodiscard]] std::optional<geometry::Path> curve_to(const geometry::BsplineCurve& curve,
+                                                       double feed, int last_decimals);
 
   // Ends a curve that the control takes as going on, if one was written last: the motion word of
   // lines, on a line of its own.

@@ -1,7 +1,6 @@
 #include "postproc/smooth/forms/program_writer.h"
 
 #include <algorithm>
-#include <span>
 
 #include "gcode/curves/curve_format.h"
 #include "gcode/state/modal_state.h"
@@ -43,12 +42,12 @@ class RunWriter {
   }
 
   // Curves of many blocks follow each other with the end of the one between them.
-  [[nodiscard]] bool write(const PlannedCurve& curve, std::span<const PlannedMove> moves,
-                           int last_decimals) {
+  [[nodiscard]] bool write(const PlannedCurve& curve, double feed, int last_decimals) {
     const std::size_t begin = writer_.text().size();
     if (!target_.curves->is_block_per_piece) writer_.end_curve();
-    if (!writer_.curve_to(curve.curve, moves.front().feed, last_decimals)) return false;
-    for (const PlannedMove& move : moves) result_.moves.push_back({move.piece, move.feed});
+    const auto printed = writer_.curve_to(curve.curve, feed, last_decimals);
+    if (!printed) return false;
+    for (const geometry::PathPiece& piece : *printed) result_.moves.push_back({piece, feed});
     count_from(begin);
     return true;
   }
@@ -168,10 +167,8 @@ std::optional<RunText> write_run(const OutputPlan& plan, const Run& run,
       if (target.curves == nullptr) return std::nullopt;
       const std::size_t end = i + curve->count;
       const bool last = end == plan.moves.size();
-      if (!out.write(*curve, std::span(plan.moves).subspan(i, curve->count),
-                     last ? std::min(run.decimals, kMostDecimals) : 0)) {
-        return std::nullopt;
-      }
+      const int last_decimals = last ? std::min(run.decimals, kMostDecimals) : 0;
+      if (!out.write(*curve, move.feed, last_decimals)) return std::nullopt;
       // Nothing stands inside a curve.
       for (++i; i < end; ++i) copy_comments(plan.moves[i].comments_before);
       ++curve;

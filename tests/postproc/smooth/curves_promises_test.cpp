@@ -105,7 +105,8 @@ void expect_read_back(const BsplineCurve& curve, const gcode::Control& target) {
   modal.units = units;
   modal.feed = 1000;
   gcode::Writer writer(target, {modal, {start, {true, true, true}}}, "\n");
-  ASSERT_TRUE(writer.curve_to(curve, 2000, 0));
+  const auto printed = writer.curve_to(curve, 2000, 0);
+  ASSERT_TRUE(printed);
   writer.end_curve();
   const Path read = cuts_of(head_at(start) + writer.text(), *target.curves);
   ASSERT_FALSE(read.empty()) << writer.text();
@@ -113,6 +114,11 @@ void expect_read_back(const BsplineCurve& curve, const gcode::Control& target) {
   EXPECT_EQ(found.verdict, geometry::Verdict::kProved) << found.bounds.at_least << "\n"
                                                        << writer.text();
   EXPECT_LT((writer.state().position.mm - geometry::end_point(read.back())).norm(), 1e-8);
+  ASSERT_EQ(printed->size(), read.size());
+  for (std::size_t i = 0; i < read.size(); ++i) {
+    const geometry::Vector3 off = point_at((*printed)[i], 0.5) - point_at(read[i], 0.5);
+    EXPECT_LT(off.norm(), 1e-8) << "piece " << i;
+  }
   EXPECT_EQ(writer.state().modal.feed, 2000);
 }
 
