@@ -12,6 +12,8 @@ cuts, rapids and dwells, from the first motion to the last. Every program runs i
              environment's LINUXCNC_BENCH
   --batten   the program; default: the environment's BATTEN, or the newest in build/*/batten
   --corpus   a folder of more programs; default: the environment's BATTEN_CORPUS; may be missing
+  --feeds    each program at these multiples of its feeds, as 1,4,10; default: as it is
+  --modes    path modes, as 'G61;G64 P0.01'; `own`: the words of the program
   --smooth   also the programs that `batten smooth` makes of these files; default: some of the
              bench's samples. --smooth none: no such rows
   FILE       programs in place of the default ones
@@ -65,8 +67,21 @@ def newest_batten():
     return max(found, key=os.path.getmtime) if found else None
 
 
+def with_feeds(text, multiple):
+    """The program at so many times its feeds; comments stay as they are."""
+    def faster(word):
+        return "%s%.10g" % (word[1], float(word[2]) * multiple)
+    if multiple == 1:
+        return text
+    parts = re.split(r"(\([^)\n]*\)|;[^\n]*)", text)
+    return "".join(part if i % 2 else re.sub(r"(?i)(F\s*)([\d.]+)", faster, part)
+                   for i, part in enumerate(parts))
+
+
 def with_mode(text, mode):
     """The program under one path mode, from its first line on, in millimetres."""
+    if mode == "own":
+        return text
     text = PATH_WORD.sub("", text)
     head, rest = re.match(r"(\s*%[^\n]*\n)?((?s:.*))", text).groups()
     return (head or "") + "G21 " + mode + "\n" + rest
@@ -77,6 +92,7 @@ def machine_file(folder, limits):
     with open(name, "w") as f:
         f.write('based-on = "linuxcnc"\nname = "bench"\nmax-velocity = %g\nmax-acceleration = %g\n'
                 'rapid-velocity = %g\npath-feed = %g\n' % (limits[:2] + limits[:1] * 2))
+        f.write("blend-tolerance = 0\nnaive-cam-tolerance = 0\n")  # the bench starts without G64
         if limits[2:]:
             f.write("[axis.z]\nvelocity = %g\nrapid-velocity = %g\n" % (limits[2:] * 2))
     return name
@@ -234,8 +250,8 @@ def main():
     p.add_argument("--batten", default=os.environ.get("BATTEN") or newest_batten())
     p.add_argument("--corpus", default=os.environ.get("BATTEN_CORPUS"))
     p.add_argument("--smooth", action="append")
-    p.add_argument("--modes", type=lambda t: t.split(";"), default=MODES,
-                   help="as 'G61;G64 P0.01'")
+    p.add_argument("--modes", type=lambda t: t.split(";"), default=MODES)
+    p.add_argument("--feeds", type=lambda t: [float(x) for x in t.split(",")], default=[1])
     p.add_argument("--limits", type=limits_of, default=LIMITS, help="as '400/4000,120/900/25'")
     p.add_argument("--recorded", action="store_true")
     p.add_argument("--cache")
@@ -262,8 +278,9 @@ def main():
         else:
             programs = default_programs(args, folder) + smoothed_programs(args, folder)
         for limits in args.limits:
-            in_modes = [(name, {mode: with_mode(text, mode) for mode in args.modes})
-                        for name, text in programs]
+            in_modes = [("%s, F x %g" % (name, feed) if feed != 1 else name,
+                         {mode: with_mode(with_feeds(text, feed), mode) for mode in args.modes})
+                        for name, text in programs for feed in args.feeds]
             table(bench, in_modes, limits, pool, differences, left_out)
     for line in left_out:
         print("left out: " + line)
