@@ -14,9 +14,6 @@ namespace {
 
 constexpr ArcChainTuning kChain = kArcChainTuning;
 
-// 36 sqrt(12): see ArcChain::crossing_angle.
-constexpr double kBestArc = 124.7;
-
 Point2 in_plane(const Point3& p) { return p.head<2>(); }
 
 // Looks for the farthest u in ]from, limit] where `holds`, beginning with a step of `guess`, down
@@ -164,7 +161,7 @@ class ArcChain {
     const double length = (curve_.point_at(after) - curve_.point_at(before)).head<2>().norm();
     if (length <= kSamePlace) return 0;
     const double change = (curve_.curvature_at(after) - curve_.curvature_at(before)) / length;
-    const double best = std::cbrt(kBestArc * limits_.deviation / std::abs(change));
+    const double best = std::cbrt(kChain.best_arc * limits_.deviation / std::abs(change));
     const double used = std::min(best, 2 * arc_length);  // best is infinite on a circle
     return -kChain.crossing_share * change * used * used / 12;
   }

@@ -37,6 +37,7 @@ struct ArcChainTuning {
   // hold, shorter ones swing too far, and the search would fall between; half of it already gives
   // 16 % longer arcs than tangents of the curve, and holds at every length.
   double crossing_share = 0.5;
+  double best_arc = 124.7;    // 36 sqrt(12): see ArcChain::crossing_angle
   double crossing_noise = 2;  // T / L: a single arc's miss of that angle; more costs the next arc
   // The error of a helix' rise per mm against the curve's, so that the direction in space does not
   // jump where heights are within their tolerance.

@@ -54,36 +54,6 @@ bool curves_wanted(const RunTask& task) {
   return options.output == Form::kCurves || (options.output == Form::kAuto && format->is_default);
 }
 
-std::vector<TimedPiece> timed(const OutputPlan& plan) {
-  std::vector<TimedPiece> moves;
-  moves.reserve(plan.moves.size());
-  for (const PlannedMove& move : plan.moves) moves.push_back({move.piece, move.feed});
-  return moves;
-}
-
-// The run between two vertices, at the feed that it has at the first.
-Run section_of(const Run& run, std::size_t first, std::size_t last) {
-  Run section;
-  const auto begin = run.points.begin();
-  section.points.assign(begin + static_cast<std::ptrdiff_t>(first),
-                        begin + static_cast<std::ptrdiff_t>(last + 1));
-  const auto after = std::ranges::upper_bound(run.feeds, first, {}, &FeedFrom::vertex);
-  section.feeds = {{0, std::prev(after)->feed}};
-  section.decimals = run.decimals;
-  return section;
-}
-
-geometry::SmoothCurve part_of(const geometry::SmoothCurve& path, std::size_t first,
-                              std::size_t last) {
-  const auto begin = path.vertex_parameters.begin();
-  geometry::SmoothCurve part{
-      path.curve.part(path.vertex_parameters[first], path.vertex_parameters[last]), {}};
-  part.vertex_parameters.assign(begin + static_cast<std::ptrdiff_t>(first),
-                                begin + static_cast<std::ptrdiff_t>(last + 1));
-  part.deviation = path.deviation;
-  return part;
-}
-
 // A form that could be made, and what it has at least.
 struct Offer {
   Form form = Form::kLines;
@@ -110,7 +80,9 @@ class CurveForms {
   void add() {
     const Form wanted = task_.options.output;
     const bool is_fair = curve_.method == Method::kFair;
-    const bool curves = curves_wanted(task_) && (is_fair || task_.options.method != Method::kBest);
+    const bool one_curve = is_fair || curve_.method == Method::kTube;  // no lines between corners
+    const bool curves =
+        curves_wanted(task_) && (one_curve || task_.options.method != Method::kBest);
     if (curves) offer_curves();
     if (wanted == Form::kCurves) {
       make_best();
@@ -146,10 +118,6 @@ class CurveForms {
       }
       auto candidate = made(offer);
       const bool limited = offer.options.most_arcs < PlanOptions().most_arcs;
-      if (is_first_ && offer.form == Form::kArcs && !offer.around_vertices) {
-        if (candidate) result_.arcs = candidate->figures.blocks;
-        if (!candidate && limited) result_.arcs = static_cast<double>(offer.options.most_arcs);
-      }
       if (candidate) {
         result_.candidates.push_back(std::move(*candidate));
       } else if (limited) {
@@ -239,20 +207,12 @@ class CurveForms {
   }
 
   void offer_arcs() {
-    // Each straight part is a line, and what joins two of them gently takes two arcs or more. With
-    // the room that the first curve had others take about as many.
+    // Each straight part is a line, and what joins two of them gently takes two arcs or more.
     const double least = 3.0 * static_cast<double>(pieces_.straight_runs.size());
-    const double blocks = is_first_ ? least : std::max(least, result_.arcs);
+    const geometry::ArcCount count(pieces_.pieces);
     const std::vector<double> all = deviations();
     const bool flat =
         lies_across(task_.run, 0) || lies_across(task_.run, 1) || lies_across(task_.run, 2);
-    if (!flat && is_first_ && !arcs_may_serve()) {
-      result_.arcs = std::numeric_limits<double>::infinity();
-    }
-    if (std::isinf(result_.arcs)) {
-      result_.left_out = true;
-      return;
-    }
     for (const double deviation : all) {
       // Were those of the next smaller deviation as near as can be, these would be the same.
       // With the target's own chords they are not as far from it as they may be.
@@ -262,36 +222,9 @@ class CurveForms {
       // Those are there to be near, not few.
       const bool near = deviation < all.back() && !wants_few_moves(task_.options);
       if (near) plan.arc_effort = geometry::ArcEffort::kBrief;
+      const double blocks = std::max(least, arcs_expected(task_.run, count, plan));
       offers_.push_back({Form::kArcs, blocks, farther ? kFormTuning.of_arcs * deviation : 0, plan});
     }
-  }
-
-  // In space the search for arcs is dear: of a long run two sections are tried first, whether they
-  // come out as fewer moves that take no longer.
-  [[nodiscard]] bool arcs_may_serve() const {
-    const std::size_t vertices = task_.run.points.size();
-    const bool choosing = task_.scope != CandidateScope::kAll &&
-                          task_.options.output == Form::kAuto && task_.run.bends.empty();
-    if (!choosing || vertices < kFormTuning.tried_from) return true;
-    for (const double part : kFormTuning.tried_at) {
-      const auto first = static_cast<std::size_t>(part * static_cast<double>(vertices));
-      if (arcs_serve(first, first + kFormTuning.tried)) return true;
-    }
-    return false;
-  }
-
-  [[nodiscard]] bool arcs_serve(std::size_t first, std::size_t last) const {
-    const Run section = section_of(task_.run, first, last);
-    const geometry::SmoothCurve fair = part_of(curve_.path, first, last);
-    const auto arcs =
-        plan_arcs(section, fair, geometry::MarkedPieces(fair.curve), CurvatureProfile(fair.curve),
-                  arcs_within(std::min(left_, deviations().back()), left_));
-    if (!arcs || arcs->moves.size() > last - first) return false;
-    const auto time = [&](const std::vector<TimedPiece>& chain) {
-      return cutting_time(chain, *task_.options.machine, task_.context.after.path);
-    };
-    const std::vector<TimedPiece> before = timed_pieces(task_.run, first, last);
-    return time(timed(*arcs)) <= (1 + kFormTuning.tried_slower) * time(before);
   }
 
   // Arcs in the band around the vertices themselves. Of arcs no more should come than there were:

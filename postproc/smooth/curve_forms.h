@@ -28,12 +28,6 @@ struct FormTuning {
   double of_height = 0.25;            // the rms of balanced chords by their height, at least
   double of_arcs = 0.25;              // that of arcs by their greatest deviation
   double for_control = 0.5;  // of what the curve leaves, for the target's own chords at the most
-  // Sections of long runs in space that are tried as arcs: from so many vertices on, so many at
-  // these parts of the run; and so much slower they may be, which starting and stopping explain.
-  std::size_t tried_from = 1500;
-  std::size_t tried = 250;
-  double tried_at[2] = {0.2, 0.6};
-  double tried_slower = 0.003;
 };
 inline constexpr FormTuning kFormTuning;
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <span>
 
@@ -212,8 +213,11 @@ class RunSmoother {
 
   // s, from rest to rest; of a part of a run the times are those between its neighbours.
   [[nodiscard]] double best_time() const {
-    double time = result_.facts.scale.alone;
-    if (context().is_piece()) return time;
+    const RunFacts& facts = result_.facts;
+    if (context().is_piece()) return facts.scale.alone;
+    // Where a form is asked for by name, the blocks as they are do not count.
+    const bool forced = is_forced(options().output, facts, options());
+    double time = forced ? std::numeric_limits<double>::infinity() : facts.scale.alone;
     for (const Candidate& c : result_.candidates) {
       time = std::min(time, c.figures.times.programmed);
     }
@@ -234,7 +238,7 @@ class RunSmoother {
   }
 
   [[nodiscard]] bool may_win_time() const {
-    return bounds_.least_time() <= kCost.clearly_faster * best_time();
+    return bounds_.least_time() <= (1 - kBounds.worth_trying) * best_time();
   }
 
   const RunTask& task_;

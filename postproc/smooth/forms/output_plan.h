@@ -8,6 +8,7 @@
 #include "gcode/control/control.h"
 #include "geometry/arcs/arc_spline.h"
 #include "geometry/fitting/fair/fair.h"
+#include "geometry/arcs/arc_count.h"
 #include "geometry/path/curve_pieces.h"
 #include "geometry/path/path.h"
 #include "postproc/machine/models/cycle_time.h"
@@ -119,6 +120,10 @@ inline constexpr PlanTuning kPlans;
                                                   const geometry::MarkedPieces& pieces,
                                                   const CurvatureProfile& bends,
                                                   const PlanOptions& options);
+
+// About how many moves plan_arcs makes of the curve at least, in the plane that takes fewest.
+[[nodiscard]] double arcs_expected(const Run& run, const geometry::ArcCount& count,
+                                   const PlanOptions& options);
 
 // Few arcs in the band around the run's vertices themselves, where max_deviation is measured from;
 // of the fair curve only the direction is taken where the path is cut. Every joint is tangent but

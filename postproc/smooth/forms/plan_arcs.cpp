@@ -450,6 +450,19 @@ std::optional<OutputPlan> plan_arcs(const Run& run, const geometry::SmoothCurve&
   return best;
 }
 
+double arcs_expected(const Run& run, const geometry::ArcCount& count, const PlanOptions& options) {
+  const std::vector<PlaneAxes> planes = arc_planes(options);
+  const bool flat = std::ranges::any_of(
+      planes, [&](const PlaneAxes& plane) { return lies_across(run, plane.normal); });
+  double fewest = std::numeric_limits<double>::infinity();
+  for (const PlaneAxes& plane : planes) {
+    if (flat && !lies_across(run, plane.normal)) continue;
+    fewest =
+        std::min(fewest, count.within(fit_deviation(options), arc_grid(options), plane.normal));
+  }
+  return fewest;
+}
+
 namespace {
 
 // A part of the run that is one chain of arcs: between changes of feed and kept corners.

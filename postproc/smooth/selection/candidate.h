@@ -69,9 +69,6 @@ struct SmoothedRun {
   std::string_view reason;
   bool left_out = false;     // there are more that the choice would not prefer to the best of these
   bool passed_over = false;  // one that could not gain was not made
-  // The blocks of arcs along the first curve, as far from it as they may be, or more than which they
-  // would be; along others they are about as many. 0: not known; infinity: they do not serve.
-  double arcs = 0;
 };
 
 // Which candidates are made. Others are of use where the proof of the chosen one fails. Of a run

@@ -35,6 +35,11 @@ double time_of(const Figures& figures, const CostScale& scale) {
   return 1 + (figures.times.programmed - scale.original.times.programmed) / scale.alone;
 }
 
+// What is longer than chords inside its bends by as much as the path that was meant is no slower.
+double counted_time(double ratio) {
+  return ratio > 1 ? std::max(1.0, ratio - kCost.longer) : ratio;
+}
+
 // What is more than it was counts more than a gain does, since who loses it has not asked for a
 // change; but a run of ten blocks may become one of a hundred, so that it has an end.
 double counted(double ratio, double loss = kCost.loss) {
@@ -53,7 +58,7 @@ double cost_of(const Figures& figures, const CostScale& scale, Prefer prefer) {
       std::max({figures.distance, scale.printed, scale.known}) / distance_before(scale);
   const double roughness = std::max(figures.roughness, kCost.no_kinks) /
                            std::max(scale.original.roughness, kCost.no_kinks);
-  return weights.time * time_of(figures, scale) +
+  return weights.time * counted_time(time_of(figures, scale)) +
          weights.size * counted(size_of(figures, scale.original)) +
          weights.distance * counted(distance) + weights.roughness * counted(roughness, 1);
 }

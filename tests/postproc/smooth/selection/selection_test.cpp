@@ -118,6 +118,12 @@ TEST_F(Choose, TakesWhatIsSlowerByLessThanAnybodyMeasures) {
   EXPECT_TRUE(choose({candidate(0.1011, 50, 0.001)}).order.empty());
 }
 
+// The path that was meant is longer than its chords: few arcs along it are no slower than they.
+TEST_F(Choose, CallsWhatIsLongerByAsMuchAsTheMeantPathNoSlower) {
+  EXPECT_EQ(choose({candidate(10, 80, 0.003), candidate(10.008, 50, 0.002)}).order, (Order{1, 0}));
+  EXPECT_EQ(choose({candidate(9.8, 80, 0.003), candidate(9.9, 50, 0.002)}).order, (Order{0, 1}));
+}
+
 TEST_F(Choose, PutsTheBestFirst) {
   const std::vector<Candidate> candidates = {
       candidate(9, 60, 0.002),    // 0
