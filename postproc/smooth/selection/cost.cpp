@@ -1,6 +1,7 @@
 #include "postproc/smooth/selection/cost.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace batten::postproc {
 
@@ -36,8 +37,10 @@ double time_of(const Figures& figures, const CostScale& scale) {
 }
 
 // What is longer than chords inside its bends by as much as the path that was meant is no slower.
+// Of what is faster a hundredth less counts alike, however slow the original is.
 double counted_time(double ratio) {
-  return ratio > 1 ? std::max(1.0, ratio - kCost.longer) : ratio;
+  if (ratio > 1) return std::max(1.0, ratio - kCost.longer);
+  return 1 + std::log(std::max(ratio, kCost.no_time));
 }
 
 // What is more than it was counts more than a gain does, since who loses it has not asked for a

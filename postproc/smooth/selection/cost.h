@@ -34,6 +34,7 @@ struct CostTuning {
   double loss = 3;  // a little more size or distance counts so many times what as much less does
   // Never slower. The path that was meant is longer than chords inside its bends, by about this.
   double longer = 1e-3;
+  double no_time = 0.01;  // of the original's: a part of a run may take less than nothing of it
   double overridden = 0.02;  // slower at other settings of the override, at most
   // What a gain is, and what makes up for being larger or farther off.
   double clearly_faster = 0.99;

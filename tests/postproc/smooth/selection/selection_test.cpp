@@ -118,6 +118,11 @@ TEST_F(Choose, TakesWhatIsSlowerByLessThanAnybodyMeasures) {
   EXPECT_TRUE(choose({candidate(0.1011, 50, 0.001)}).order.empty());
 }
 
+// Both take a sixth of the original's time, and one of them a tenth less.
+TEST_F(Choose, CountsATenthOfTheTimeWhereTheOriginalIsFarSlower) {
+  EXPECT_EQ(choose({candidate(1.6, 80, 0.001), candidate(1.44, 80, 0.008)}).order, (Order{1, 0}));
+}
+
 // The path that was meant is longer than its chords: few arcs along it are no slower than they.
 TEST_F(Choose, CallsWhatIsLongerByAsMuchAsTheMeantPathNoSlower) {
   EXPECT_EQ(choose({candidate(10, 80, 0.003), candidate(10.008, 50, 0.002)}).order, (Order{1, 0}));
