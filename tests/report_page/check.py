@@ -243,6 +243,14 @@ class PageCheck:
     def pressed(self, selector):
         return self.browser.run("return document.querySelector(arguments[0]).getAttribute('aria-pressed')", selector)
 
+    def says_the_distance_in_its_units(self):
+        shown = self.value("[...document.querySelectorAll('[data-figure=\"path_after.distance_mm\"]')].map((e) => e.textContent)")
+        for text in shown:
+            number, unit = text.split("\u00a0")
+            now = self.report["path_after"]["distance_mm"] / (25.4 if unit == "in" else 1)
+            expect(abs(float(number) - now) <= (0.6e-5 if unit == "in" else 0.6e-4), f"distance {text}, {now} {unit}")
+        return [text.split("\u00a0")[1] for text in shown]
+
     def controls_work(self):
         browser = self.browser
         self.changes("a view", lambda: (browser.click("[data-view=side]"), browser.click("[data-view=front]")))
@@ -258,7 +266,10 @@ class PageCheck:
         browser.keys("cc")
         self.changes("arrow key", lambda: browser.keys("\ue012", "#canvas"))
         self.changes("theme", lambda: browser.keys("t"))
+        before = self.says_the_distance_in_its_units()
         self.changes("units", lambda: browser.keys("u"), "#chart-deviation")
+        after = self.says_the_distance_in_its_units()
+        expect(not before or before != after, f"the distance is in {after} in both units")
         browser.keys("ut0")
         if self.report["deviation_mm"] > 0 and any(r["status"] == "rewritten" for r in self.report["runs"]):
             self.changes("greatest deviation", lambda: browser.click("#worst"))

@@ -11,8 +11,12 @@ const units = {
 
 const thousands = (n) => n.toLocaleString('en-US').replace(/,/g, '\u202f');
 
+function lengthDigits(mm, digits = 4) {
+  return units.of(mm).toFixed(units.inch ? digits + 1 : digits);
+}
+
 function lengthText(mm, digits = 4) {
-  return `${units.of(mm).toFixed(units.inch ? digits + 1 : digits)}\u00a0${units.length}`;
+  return `${lengthDigits(mm, digits)}\u00a0${units.length}`;
 }
 
 function feedText(mmPerMin) {

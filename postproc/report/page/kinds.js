@@ -77,7 +77,7 @@ function smoothPage(report, path, columns) {
       tile('Blocks', [figure('input.blocks', inOut[0], thousands(inOut[0])), ' \u2192 ', figure('output.blocks', inOut[1], thousands(inOut[1]))],
         [gain(...inOut), `, ${thousands(report.input.bytes)} \u2192 ${thousands(report.output.bytes)} bytes`], twoBars(...inOut)),
       ...(old.length_mm > 0 ? [
-        pairTile('Distance, rms', ['path_before.distance_mm', 'path_after.distance_mm'], [old.distance_mm, now.distance_mm], digits(4), '\u00a0mm', ', from the path that was meant'),
+        pairTile('Distance, rms', ['path_before.distance_mm', 'path_after.distance_mm'], [old.distance_mm, now.distance_mm], lengthDigits, `\u00a0${units.length}`, ', from the path that was meant'),
         pairTile('Roughness', ['path_before.roughness', 'path_after.roughness'], [old.roughness, now.roughness], digits(3), '', ', turns at joints, rad/\u221amm'),
       ] : []),
       ...(report.cutting_before_s > 0 ? [pairTile('Slow', ['slow_before', 'slow_after'], [100 * report.slow_share_before, 100 * report.slow_share_after],

@@ -40,7 +40,7 @@ function gain(before, after, digits) {
 
 // One figure before and after. `text`: of a value.
 function pairTile(title, names, values, text, unit, note, digits) {
-  const [before, after] = values.map(text);
+  const [before, after] = values.map((value) => text(value));
   return tile(title, [figure(names[0], values[0], before), ' \u2192 ', figure(names[1], values[1], after + unit)],
     [gain(values[0], before === after ? values[0] : values[1], digits), note], twoBars(...values));
 }
