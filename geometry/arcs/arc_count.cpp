@@ -6,21 +6,11 @@
 #include "geometry/arcs/arc_chain.h"
 #include "geometry/arcs/arc_fit.h"
 #include "geometry/basic/rounding.h"
+#include "geometry/path/cubic_polynomial.h"
 
 namespace batten::geometry {
 
 namespace {
-
-Vector3 first_derivative(const CubicBezier& piece, double t) {
-  const auto& p = piece.control;
-  const double s = 1 - t;
-  return 3 * (s * s * (p[1] - p[0]) + 2 * s * t * (p[2] - p[1]) + t * t * (p[3] - p[2]));
-}
-
-Vector3 second_derivative(const CubicBezier& piece, double t) {
-  const auto& p = piece.control;
-  return 6 * ((1 - t) * (p[2] - 2 * p[1] + p[0]) + t * (p[3] - 2 * p[2] + p[1]));
-}
 
 constexpr int kParts = 4;  // of each piece, in which bend and rise change evenly
 
@@ -56,11 +46,12 @@ double arcs_by_slope(double change_per_mm, double grid) {
 ArcCount::ArcCount(const CurvePieces& pieces) {
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     const CubicBezier& piece = pieces.piece(i);
+    const CubicPolynomial cubic(piece);
     std::array<SeenPlace, 3> before;
     for (int k = 0; k <= kParts; ++k) {
       const double t = static_cast<double>(k) / kParts;
-      const Vector3 d1 = first_derivative(piece, t);
-      const Vector3 d2 = second_derivative(piece, t);
+      const Vector3 d1 = cubic.first(t);
+      const Vector3 d2 = cubic.second(t);
       for (int normal = 0; normal < 3; ++normal) {
         const SeenPlace here = seen_along(normal, d1, d2);
         if (k > 0) {

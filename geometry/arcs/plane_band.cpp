@@ -154,12 +154,6 @@ class ArcMeter {
   double angle_ = 0;                  // of it
 };
 
-double distance_to_segment(const Point2& p, const Point2& a, const Point2& b) {
-  const Vector2 d = b - a;
-  const double t = std::clamp((p - a).dot(d) / d.squaredNorm(), 0.0, 1.0);
-  return (p - a - t * d).norm();
-}
-
 }  // namespace
 
 PlaneBand::PlaneBand(std::span<const Point2> points, const Limits& limits)

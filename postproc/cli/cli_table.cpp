@@ -58,7 +58,8 @@ constexpr OptionRow kSide =
             "where the new path may be, seen along the way of travel from above", "both");
 constexpr OptionRow kSeam = setting(
     "seam", kValue, "corner|smooth",
-    "the corner in which a closed path begins: it stays, or is rounded as others are", "corner");
+    "the corner in which a closed path begins: it stays, or is rounded where two lines meet there",
+    "corner");
 constexpr OptionRow kUnits =
     setting("units", kValue, "mm|inch", "units of a program that has no G20 or G21");
 constexpr OptionRow kSource = setting(

@@ -17,13 +17,6 @@ constexpr double kRegionDrawnWithin = 0.005;
 // Left out in a row at most: each step asks all of them again.
 constexpr std::size_t kMostRegionSkipped = 64;
 
-double distance_to_chord(const Point2& from, const Point2& to, const Point2& place) {
-  const geometry::Vector2 along = to - from;
-  const double square = along.squaredNorm();
-  const double share = square > 0 ? std::clamp((place - from).dot(along) / square, 0.0, 1.0) : 0;
-  return (place - from - share * along).norm();
-}
-
 // The places without those that are near the chord from a kept one to the next. The ends stay.
 std::vector<Point2> thinned_places(std::span<const Point2> all, double within) {
   std::vector<Point2> kept = {all.front()};
@@ -31,7 +24,7 @@ std::vector<Point2> thinned_places(std::span<const Point2> all, double within) {
     std::size_t to = from + 1;
     const auto may_skip_to = [&](std::size_t next) {
       const auto is_near = [&](const Point2& place) {
-        return distance_to_chord(all[from], all[next], place) <= within;
+        return geometry::distance_to_segment(place, all[from], all[next]) <= within;
       };
       return std::ranges::all_of(all.subspan(from + 1, next - from - 1), is_near);
     };

@@ -32,11 +32,6 @@ struct RunTuning {
   double more_room = 3;
   double side_margin = 0.25;  // of the form's share, on the side where the run must not be cut
   double sharp_corner = 30 * geometry::kPi / 180;  // radians: corners that turn more may stay
-  // The tube takes some ten milliseconds, and up to one for each point: it is tried where the bound
-  // leaves this part of the time to win, and so many seconds with so many more for each point.
-  double tube_wins = 0.02;
-  double tube_starts = 0.25;
-  double tube_costs = 0.0005;
   // So many of the pieces are reverted at once that a long run is timed a few times only.
   std::size_t reverted_share = 4;
 };
@@ -198,12 +193,9 @@ class RunSmoother {
     if (options().side != geometry::Side::kBoth || options().prefer == Prefer::kAccuracy) return;
     if (context().is_piece() || !std::isfinite(options().machine->max_jerk())) return;
     if (corner_part() >= kBounds.corners) return;
-    const double worth =
-        std::max(kRun.tube_wins * best_time(),
-                 kRun.tube_starts + kRun.tube_costs * static_cast<double>(run().points.size()));
     const CurveRequest request = curve_request(Method::kTube);
-    if (best_time() - bounds_.least_time() < worth) return;
-    if (best_time() - straight_time(fair_->curve, request) < worth) return;
+    const double least = std::max(bounds_.least_time(), straight_time(fair_->curve, request));
+    if (!tube_is_worth_trying(run().points.size(), least, best_time())) return;
     try_curve(Method::kTube, request);
   }
 
@@ -238,7 +230,7 @@ class RunSmoother {
   }
 
   [[nodiscard]] bool may_win_time() const {
-    return bounds_.least_time() <= (1 - kBounds.worth_trying) * best_time();
+    return rounding_is_worth_trying(bounds_.least_time(), best_time());
   }
 
   const RunTask& task_;

@@ -131,17 +131,21 @@ class Bench:
     def measured(self, text, limits):
         key = self.key(text, limits)
         if key not in self.cache:
-            r = subprocess.run([os.path.join(self.args.bench, "lcnc_time.sh"),
-                                self.file_of(text, limits), "--json", "--vmax", "%g" % limits[0],
-                                "--amax", "%g" % limits[1],
-                                *(["--vz", "%g" % limits[2]] if limits[2:] else [])],
-                               capture_output=True, text=True)
-            try:
-                self.cache[key] = json.loads(r.stdout)
-            except ValueError:
-                self.cache[key] = {"errors": [(r.stderr or r.stdout).strip()[-300:]]}
+            self.cache[key] = self.run_bench(self.file_of(text, limits), limits)
             self.keep()
         return self.cache[key]
+
+    def run_bench(self, file, limits):
+        command = [os.path.join(self.args.bench, "lcnc_time.sh"), file, "--json",
+                   "--vmax", "%g" % limits[0], "--amax", "%g" % limits[1],
+                   *(["--vz", "%g" % limits[2]] if limits[2:] else [])]
+        try:
+            r = subprocess.run(command, capture_output=True, text=True, timeout=self.args.patience)
+            return json.loads(r.stdout)
+        except subprocess.TimeoutExpired:  # as for G33 without a spindle that turns
+            return {"errors": ["no end within %g s" % self.args.patience]}
+        except ValueError:
+            return {"errors": [(r.stderr or r.stdout).strip()[-300:]]}
 
     def keep(self):
         if not self.args.cache:
@@ -256,6 +260,7 @@ def main():
     p.add_argument("--recorded", action="store_true")
     p.add_argument("--cache")
     p.add_argument("--jobs", type=int, default=2)
+    p.add_argument("--patience", type=float, default=600, help="seconds for one run of the bench")
     args = p.parse_intermixed_args()
     if not args.bench or not os.path.isfile(os.path.join(args.bench, "lcnc_time.sh")):
         print("no bench: --bench DIR or LINUXCNC_BENCH", file=sys.stderr)

@@ -15,21 +15,15 @@ constexpr int kParts = 4;
 constexpr int kMoreParts = 24;
 constexpr double kLookCloser = 0.6;
 
-double distance_to_edge(const Point3& p, const Point3& a, const Point3& b) {
-  const Vector3 d = b - a;
-  const double t = std::clamp((p - a).dot(d) / d.squaredNorm(), 0.0, 1.0);
-  return (p - a - t * d).norm();
-}
-
 // Distance to an edge or to its neighbours, the least of them; `enough` ends the search.
 double distance_beside(std::span<const Point3> points, std::size_t edge, const Point3& p,
                        double enough) {
-  double nearest = distance_to_edge(p, points[edge], points[edge + 1]);
+  double nearest = distance_to_segment(p, points[edge], points[edge + 1]);
   if (nearest > enough && edge > 0) {
-    nearest = std::min(nearest, distance_to_edge(p, points[edge - 1], points[edge]));
+    nearest = std::min(nearest, distance_to_segment(p, points[edge - 1], points[edge]));
   }
   if (nearest > enough && edge + 2 < points.size()) {
-    nearest = std::min(nearest, distance_to_edge(p, points[edge + 1], points[edge + 2]));
+    nearest = std::min(nearest, distance_to_segment(p, points[edge + 1], points[edge + 2]));
   }
   return nearest;
 }

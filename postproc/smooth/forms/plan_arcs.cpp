@@ -316,17 +316,10 @@ class OwnChords {
   [[nodiscard]] double distance_to_run(const Point3& point, std::size_t last) const {
     double nearest = std::numeric_limits<double>::infinity();
     for (std::size_t i = first_; i < last; ++i) {
-      nearest = std::min(nearest, distance_to_edge(point, i));
+      nearest = std::min(nearest,
+                         geometry::distance_to_segment(point, run_.points[i], run_.points[i + 1]));
     }
     return nearest;
-  }
-
-  [[nodiscard]] double distance_to_edge(const Point3& point, std::size_t i) const {
-    const Vector3 along = run_.points[i + 1] - run_.points[i];
-    const double length2 = along.squaredNorm();
-    const Vector3 from = point - run_.points[i];
-    const double t = length2 > 0 ? std::clamp(from.dot(along) / length2, 0.0, 1.0) : 0;
-    return (from - t * along).norm();
   }
 
   const Run& run_;

@@ -194,8 +194,17 @@ double coarse_part(const Run& run, double tolerance) {
   return p.size() > 2 ? static_cast<double>(coarse) / static_cast<double>(p.size() - 2) : 0;
 }
 
+bool rounding_is_worth_trying(double least_time, double time) {
+  return least_time <= (1 - kBounds.worth_trying) * time;
+}
+
+bool tube_is_worth_trying(std::size_t points, double least_time, double time) {
+  const double costs = kBounds.tube_starts + kBounds.tube_costs * static_cast<double>(points);
+  return rounding_is_worth_trying(least_time, time) && time - least_time >= costs;
+}
+
 bool corners_are_worth_trying(double corners, double least_time, double time) {
-  return corners >= kBounds.corners && least_time <= (1 - kBounds.worth_trying) * time;
+  return corners >= kBounds.corners && rounding_is_worth_trying(least_time, time);
 }
 
 bool searches_are_worth_trying(std::size_t points, double least_time, double before, double now) {

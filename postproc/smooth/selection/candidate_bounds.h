@@ -17,11 +17,15 @@ struct BoundTuning {
   // Of their scatter: the fair curve of scattered vertices is no better known, so that a form that
   // is nearer to it is not nearer to the path that was meant.
   double known = 0.5;
-  double fewer = 0.8;              // of the blocks that are expected there may be so few
-  double least_bytes = 8;          // of a block
-  double corners = 0.5;            // part of the vertices that makes a run one of corners
-  double worth_trying = 0.02;      // part of the time: the least that there must be left to win
-  double search_costs = 0.02;      // s for each vertex: less machine time is not worth a search
+  double fewer = 0.8;          // of the blocks that are expected there may be so few
+  double least_bytes = 8;      // of a block
+  double corners = 0.5;        // part of the vertices that makes a run one of corners
+  double worth_trying = 0.02;  // part of the time: the least that there must be left to win
+  double search_costs = 0.02;  // s for each vertex: less machine time is not worth a search
+  // The tube takes some ten milliseconds, and up to one for each point: so many seconds of the
+  // machine are worth it, with so many more for each point.
+  double tube_starts = 0.25;
+  double tube_costs = 0.0005;
   std::size_t most_searched = 50;  // points: time-optimal and eight-point corners are searches each
 };
 inline constexpr BoundTuning kBounds;
@@ -71,6 +75,13 @@ class CandidateBounds {
 // The part of the run's vertices whose chords would leave a curve through them by more than
 // `tolerance`: a run of a coarser one, of which only the corners could be rounded.
 [[nodiscard]] double coarse_part(const Run& run, double tolerance);
+
+// Whether another curve may win enough for its work, where the fastest form so far takes `time`
+// (s).
+[[nodiscard]] bool rounding_is_worth_trying(double least_time, double time);
+
+// The same of the curve of least time in a tube.
+[[nodiscard]] bool tube_is_worth_trying(std::size_t points, double least_time, double time);
 
 // For Method::kBest: whether a method of corners may win on a run. `corners` is coarse_part of it,
 // `time` (s) what its fastest form so far takes on the machine.

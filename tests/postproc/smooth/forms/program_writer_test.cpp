@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <random>
 #include <string>
@@ -138,6 +139,37 @@ TEST(WriteRun, HasTheMovesThatItsNumbersSay) {
   ASSERT_TRUE(std::holds_alternative<geometry::Arc>(out->moves[1].piece));
   EXPECT_LE((std::get<geometry::Arc>(out->moves[1].piece).center - Point3(2, 0.0003, 0)).norm(),
             1e-12);
+}
+
+// A wave of two pieces, whose joint is printed beside where it is planned.
+TEST(WriteRun, HasTheCurvesThatItsNumbersSay) {
+  const Point3 joint(5.00012345, 2.00023456, 0);
+  const geometry::CubicBezier pieces[] = {
+      {{Point3::Zero(), {1.5, 2, 0}, joint - Vector3(2, 0, 0), joint}},
+      {{joint, joint + Vector3(2, 0, 0), {8.5, 2, 0}, {10, 0, 0}}}};
+  Planned planned({0, 0, 0});
+  planned.plan.form = Form::kCurves;
+  std::vector<Point3> points;
+  for (const geometry::CubicBezier& piece : pieces) {
+    planned.plan.moves.push_back({piece, 1000, {}});
+    planned.run.points.push_back(piece.control[3]);
+    points.insert(points.end(), std::begin(piece.control) + (points.empty() ? 0 : 1),
+                  std::end(piece.control));
+  }
+  const geometry::BsplineBasis basis(3, {0, 0, 0, 0, 1, 1, 1, 2, 2, 2, 2});
+  planned.plan.curves = {{0, 2, {basis, points}}};
+  for (const char* target : {"linuxcnc", "siemens"}) {
+    SCOPED_TRACE(target);
+    const auto out = written(planned, target, cutting(), cutting());
+    ASSERT_TRUE(out);
+    ASSERT_EQ(out->moves.size(), 2U) << out->text;
+    const Point3 printed = geometry::end_point(out->moves[0].piece);
+    EXPECT_LE((printed - geometry::start_point(out->moves[1].piece)).norm(), 1e-12);
+    EXPECT_LE((printed - joint).norm(), 1e-3);
+    const Vector3 in_steps = printed / 1e-5;  // five decimals at the most
+    EXPECT_LE((in_steps - in_steps.array().round().matrix()).norm(), 1e-6) << out->text;
+    EXPECT_EQ(out->moves[1].feed, 1000);
+  }
 }
 
 TEST(WriteRun, MeetsTheLastPointWithAllItsDecimals) {

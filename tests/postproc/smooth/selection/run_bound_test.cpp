@@ -102,6 +102,20 @@ TEST(CornersAreWorthTrying, OnRunsOfCornersWhereTimeIsLeftToWin) {
   EXPECT_FALSE(corners_are_worth_trying(0.1, 5, 10));
 }
 
+TEST(RoundingIsWorthTrying, WhereItsBoundLeavesTwoPerCent) {
+  EXPECT_TRUE(rounding_is_worth_trying(9.75, 10));
+  EXPECT_FALSE(rounding_is_worth_trying(9.85, 10));
+}
+
+// A quarter of a second, with half a millisecond for each point, and two per cent of the time.
+TEST(TubeIsWorthTrying, WhereItsBoundLeavesWhatItsWorkCosts) {
+  EXPECT_TRUE(tube_is_worth_trying(20, 0.7, 1));
+  EXPECT_FALSE(tube_is_worth_trying(20, 0.8, 1));
+  EXPECT_TRUE(tube_is_worth_trying(2000, 8.5, 10));
+  EXPECT_FALSE(tube_is_worth_trying(2000, 9, 10));
+  EXPECT_FALSE(tube_is_worth_trying(20, 99, 100));
+}
+
 // Where the control rounds corners itself, no curve through them wins what the search costs.
 TEST(SearchesAreWorthTrying, WhereRoundingHasWonTimeAndMoreIsLeft) {
   EXPECT_TRUE(searches_are_worth_trying(20, 5, 10, 9.8));
