@@ -257,7 +257,8 @@ class CurveForms {
       const double height = std::max(kFormTuning.near_chords[i] * distance_before(),
                                      facts().scale.printed / kFormTuning.of_height);
       if (height > kFormTuning.another * highest) continue;
-      offer_chords(height, kFormTuning.most_blocks[i], highest);
+      const bool accurate = task_.options.prefer == Prefer::kAccuracy;
+      offer_chords(height, accurate && i == 0 ? kFormTuning.accurate_blocks : 1, highest);
     }
     offer_chords(highest, 0, highest);
     if (linearize_of(task_.options) == Linearize::kMinLink) offer_named_lines();

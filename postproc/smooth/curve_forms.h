@@ -17,11 +17,11 @@ namespace batten::postproc {
 // How far forms may be from the curve: multiples of what the run itself is from the path that was
 // meant (rms), and of the form's share of the tolerance.
 struct FormTuning {
-  double near_arcs[3] = {0.2, 0.5, 1.6};      // greatest distance of arcs and curves
-  double near_chords[3] = {0.6, 1.35, 3.0};   // heights: in more blocks, as many, and fewer
-  double most_blocks[3] = {1.5, 1, 1};        // of them, in parts of those before
-  double far = 1.5;                           // of the share
-  double one_sided = 0.25;                    // of that, where the run must not be cut on one side
+  double near_arcs[3] = {0.2, 0.5, 1.6};     // greatest distance of arcs and curves
+  double near_chords[3] = {0.6, 1.35, 3.0};  // heights
+  double accurate_blocks = 1.5;  // in parts of those before: of the nearest, for accuracy
+  double far = 1.5;              // of the share
+  double one_sided = 0.25;       // of that, where the run must not be cut on one side
   double named_chords[3] = {1.5, 0.6, 0.25};  // of the share, for lines laid by a named method
   double another = 0.9;               // of what is farther, at most, or it is the same again
   double bands[3] = {1, 0.97, 0.94};  // parts of the band around arcs in which few are looked for

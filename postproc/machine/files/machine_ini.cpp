@@ -23,6 +23,7 @@ namespace {
 // --- the machine ---------------------------------------------------------------------------------
 
 constexpr double kNanosecond = 1e-9;
+constexpr double kStartTolerance = 0.001 * kInch;  // mm, with which LinuxCNC starts
 
 // As LinuxCNC knows them; mm.
 constexpr std::array kLengthUnits = {Unit{"mm", 1}, Unit{"metric", 1}, Unit{"in", kInch},
@@ -55,7 +56,7 @@ class MachineIniReader {
     machine_.name = std::filesystem::path(file_).stem().string();
     machine_.description = "LinuxCNC machine from " + file_;
     machine_.source = file_;
-    machine_.blend_tolerance = 0;
+    machine_.blend_tolerance = kStartTolerance;
     machine_.naive_cam_tolerance = 0;
     mm_ = unit_of("LINEAR_UNITS", kLengthUnits);
     degrees_ =
@@ -237,9 +238,9 @@ class MachineIniReader {
     }
     if (mode == 61) machine_.path_mode = gcode::PathMode::kExactPath;
     if (mode == 61.1) machine_.path_mode = gcode::PathMode::kExactStop;
-    if (mode != 64 || !p) return;
-    machine_.blend_tolerance = *p * unit;
-    machine_.naive_cam_tolerance = q.value_or(*p) * unit;
+    if (mode != 64) return;
+    machine_.blend_tolerance = p.value_or(0) * unit;
+    machine_.naive_cam_tolerance = q.value_or(p.value_or(0)) * unit;
     remember("blend-tolerance", *entry);
     remember("naive-cam-tolerance", *entry);
   }

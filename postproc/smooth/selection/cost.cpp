@@ -61,9 +61,17 @@ double cost_of(const Figures& figures, const CostScale& scale, Prefer prefer) {
       std::max({figures.distance, scale.printed, scale.known}) / distance_before(scale);
   const double roughness = std::max(figures.roughness, kCost.no_kinks) /
                            std::max(scale.original.roughness, kCost.no_kinks);
-  return weights.time * counted_time(time_of(figures, scale)) +
-         weights.size * counted(size_of(figures, scale.original)) +
-         weights.distance * counted(distance) + weights.roughness * counted(roughness, 1);
+  const double size = size_of(figures, scale.original);
+  const bool is_worse =
+      figures.blocks > scale.original.blocks || distance > 1 || roughness > kCost.rougher;
+  const auto lost = [](double weight, double ratio, double loss = kCost.loss) {
+    return weight * (counted(std::max(ratio, 1.0), loss) - 1);
+  };
+  const double losses = lost(weights.size, size) + lost(weights.distance, distance) +
+                        lost(weights.roughness, roughness, 1);
+  return weights.time * counted_time(time_of(figures, scale)) + weights.size * counted(size) +
+         weights.distance * counted(distance) + weights.roughness * counted(roughness, 1) +
+         (is_worse ? std::max(0.0, kCost.worse - losses) : 0);
 }
 
 bool is_slower(const Times& now, const Times& before, double period) {

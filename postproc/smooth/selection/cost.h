@@ -32,9 +32,12 @@ struct CostTuning {
   double near = 0.03;
   double no_kinks = 1e-3;  // rad/sqrt(mm): less is as smooth
   double loss = 3;  // a little more size or distance counts so many times what as much less does
+  // Where any figure is more than it was, the roughness by so much, losses cost this at least.
+  double worse = 0.01;
+  double rougher = 1.05;
   // Never slower. The path that was meant is longer than chords inside its bends, by about this.
   double longer = 1e-3;
-  double no_time = 0.01;  // of the original's: a part of a run may take less than nothing of it
+  double no_time = 0.01;     // of the original's: a part of a run may take less than nothing of it
   double overridden = 0.02;  // slower at other settings of the override, at most
   // What a gain is, and what makes up for being larger or farther off.
   double clearly_faster = 0.99;
@@ -64,7 +67,8 @@ struct CostScale {
   double period = 0;   // s, of the control: what nobody measures
 };
 
-// The sum of the weighted ratios. The smaller the better; total and transitive as numbers are.
+// The sum of the weighted ratios, in which losses have a least price. The smaller the better;
+// total and transitive as numbers are.
 [[nodiscard]] double cost_of(const Figures& figures, const CostScale& scale, Prefer prefer);
 
 // Whether the times are more than a control's period, and what the longer path takes, above those

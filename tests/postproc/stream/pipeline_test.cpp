@@ -155,7 +155,7 @@ TEST(Pipeline, KeepsCommentsAtTheirPlace) {
 
 // Engraving programs say at each block what it is for.
 TEST(Pipeline, WritesNoMoreLinesWhereACommentIsBehindEachMove) {
-  std::vector<std::string> lines = wave_lines({.height = 3, .noise = 0.002});
+  std::vector<std::string> lines = wave_lines({.height = 3, .noise = 0.004});
   for (std::string& line : lines) line += " (lineto)";
   const std::string text = head("G21") + joined(lines, "\n") + tail();
   const auto newlines = [](const std::string& of) { return std::ranges::count(of, '\n'); };

@@ -362,7 +362,7 @@ TEST(MachineIni, GivesLimitsInMillimetres) {
     EXPECT_DOUBLE_EQ(m.servo_period, 0.0005);
     EXPECT_DOUBLE_EQ(m.block_period, 0.0005);
     EXPECT_EQ(m.path_mode, PathMode::kBlending);
-    EXPECT_EQ(m.blend_tolerance, 0);
+    EXPECT_EQ(m.blend_tolerance, 0.0254) << "as LinuxCNC starts";
     EXPECT_EQ(m.naive_cam_tolerance, 0);
   }
 }
@@ -405,9 +405,9 @@ TEST(MachineIni, BlendsAsTheStartupCodeSays) {
            StartupCase{"mm", "G20 G64 P0.001", PathMode::kBlending, 0.0254, 0.0254},
            StartupCase{"inch", "G64 P0.001 Q0", PathMode::kBlending, 0.0254, 0},
            StartupCase{"inch", "G64 P0.02 G21", PathMode::kBlending, 0.02, 0.02},
-           StartupCase{"mm", "G61", PathMode::kExactPath, 0, 0},
-           StartupCase{"mm", "G61.1 (stops)", PathMode::kExactStop, 0, 0},
-           StartupCase{"mm", "G21 (G64 P5)", PathMode::kBlending, 0, 0},
+           StartupCase{"mm", "G61", PathMode::kExactPath, 0.0254, 0},
+           StartupCase{"mm", "G61.1 (stops)", PathMode::kExactStop, 0.0254, 0},
+           StartupCase{"mm", "G21 (G64 P5)", PathMode::kBlending, 0.0254, 0},
        }) {
     SCOPED_TRACE(c.code);
     const Machine m = machine_of(

@@ -123,6 +123,21 @@ TEST_F(Choose, CountsATenthOfTheTimeWhereTheOriginalIsFarSlower) {
   EXPECT_EQ(choose({candidate(1.6, 80, 0.001), candidate(1.44, 80, 0.008)}).order, (Order{1, 0}));
 }
 
+// What makes any figure worse costs a hundredth of the time at least, however little it is.
+TEST_F(Choose, TakesAHundredthOfTheTimeForWhatMakesAnyFigureWorse) {
+  EXPECT_EQ(choose({candidate(9.7, 100, 0.004), candidate(9.65, 101, 0.004)}).order, (Order{0, 1}));
+  EXPECT_EQ(choose({candidate(9.7, 100, 0.004), candidate(9.58, 101, 0.004)}).order, (Order{1, 0}));
+  EXPECT_EQ(choose({candidate(9.7, 100, 0.004), candidate(9.65, 90, 0.0041)}).order, (Order{0, 1}));
+  run_.facts.scale.original.roughness = 0.1;
+  Candidate same = candidate(9.7, 100, 0.004);
+  Candidate rougher = candidate(9.65, 90, 0.003);
+  same.figures.roughness = 0.1;
+  rougher.figures.roughness = 0.104;
+  EXPECT_EQ(choose({same, rougher}).order, (Order{1, 0}));
+  rougher.figures.roughness = 0.106;
+  EXPECT_EQ(choose({same, rougher}).order, (Order{0, 1}));
+}
+
 // The path that was meant is longer than its chords: few arcs along it are no slower than they.
 TEST_F(Choose, CallsWhatIsLongerByAsMuchAsTheMeantPathNoSlower) {
   EXPECT_EQ(choose({candidate(10, 80, 0.003), candidate(10.008, 50, 0.002)}).order, (Order{1, 0}));
