@@ -162,6 +162,29 @@ class Reducer {
 
 }  // namespace
 
+double spans_expected(const CurvePieces& pieces, double deviation) {
+  require(deviation > 0, "spans_expected: deviation", deviation, "> 0");
+  constexpr double kInterpolation = 5.0 / 384;
+  const auto& breaks = pieces.breaks();
+  const auto third_derivative = [&](std::size_t i) -> Vector3 {
+    const auto& c = pieces.piece(i).control;
+    const double width = breaks[i + 1] - breaks[i];
+    return 6 / (width * width * width) * (c[3] - 3 * c[2] + 3 * c[1] - c[0]);
+  };
+  double spans = 1;
+  std::size_t first = 0;  // piece of the span
+  Vector3 there = third_derivative(0);
+  for (std::size_t i = 1; i < pieces.size(); ++i) {
+    const double width = breaks[i + 1] - breaks[first];
+    const Vector3 here = third_derivative(i);
+    if (kInterpolation * (here - there).norm() * width * width * width <= deviation) continue;
+    ++spans;
+    first = i;
+    there = here;
+  }
+  return spans;
+}
+
 std::optional<BsplineCurve> on_fewer_knots(const BsplineCurve& curve,
                                            const FewerKnotsOptions& options) {
   require(options.max_deviation > 0, "on_fewer_knots: deviation", options.max_deviation, "> 0");

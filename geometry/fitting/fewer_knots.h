@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "geometry/path/bspline_curve.h"
+#include "geometry/path/curve_pieces.h"
 
 namespace batten::geometry {
 
@@ -24,5 +25,10 @@ struct FewerKnotsOptions {
 // Returns nothing when fewer control points do not do. Requires degree 3. Linear cost.
 [[nodiscard]] std::optional<BsplineCurve> on_fewer_knots(const BsplineCurve& curve,
                                                          const FewerKnotsOptions& options);
+
+// About how many spans that takes, known before one is fitted: within a deviation (mm, > 0) a span
+// of a cubic spline is as long as the third derivative may change along it (5/384 h^3 |change|, the
+// error of interpolation on even knots). Mostly half to all of what is found then. Linear cost.
+[[nodiscard]] double spans_expected(const CurvePieces& pieces, double deviation);
 
 }  // namespace batten::geometry

@@ -201,8 +201,14 @@ class CurveForms {
   void offer_curves() {
     const bool few = task_.options.quick && !task_.options.target->curves->is_default;
     const std::vector<double> all = deviations();
+    const bool any_number =
+        task_.options.output == Form::kCurves || facts().form == Form::kCurves ||
+        rounding_is_worth_trying(setting_.bounds.least_time(), facts().scale.alone);
+    const double most = kFormTuning.curve_blocks * facts().scale.original.blocks;
     for (const double deviation : std::span(all).last(few ? 1 : all.size())) {
-      offers_.push_back({Form::kCurves, 0, 0, plan_within(deviation)});
+      const PlanOptions plan = plan_within(deviation);
+      if (!any_number && curves_expected(pieces_, plan) > most) continue;
+      offers_.push_back({Form::kCurves, 0, 0, plan});
     }
   }
 

@@ -23,6 +23,9 @@ struct FormTuning {
   double far = 1.5;              // of the share
   double one_sided = 0.25;       // of that, where the run must not be cut on one side
   double named_chords[3] = {1.5, 0.6, 0.25};  // of the share, for lines laid by a named method
+  // Blocks, in parts of those before, that curves are expected in at most where none are asked for
+  // and no time is left to win: each says several numbers for each axis.
+  double curve_blocks = 0.5;
   double another = 0.9;               // of what is farther, at most, or it is the same again
   double bands[3] = {1, 0.97, 0.94};  // parts of the band around arcs in which few are looked for
   double of_height = 0.25;            // the rms of balanced chords by their height, at least

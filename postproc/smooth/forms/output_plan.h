@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "gcode/control/control.h"
+#include "geometry/arcs/arc_count.h"
 #include "geometry/arcs/arc_spline.h"
 #include "geometry/fitting/fair/fair.h"
-#include "geometry/arcs/arc_count.h"
 #include "geometry/path/curve_pieces.h"
 #include "geometry/path/path.h"
 #include "postproc/machine/models/cycle_time.h"
@@ -124,6 +124,10 @@ inline constexpr PlanTuning kPlans;
 // About how many moves plan_arcs makes of the curve at least, in the plane that takes fewest.
 [[nodiscard]] double arcs_expected(const Run& run, const geometry::ArcCount& count,
                                    const PlanOptions& options);
+
+// About how many blocks plan_curves comes in, known before it is made.
+[[nodiscard]] double curves_expected(const geometry::MarkedPieces& pieces,
+                                     const PlanOptions& options);
 
 // Few arcs in the band around the run's vertices themselves, where max_deviation is measured from;
 // of the fair curve only the direction is taken where the path is cut. Every joint is tangent but

@@ -211,6 +211,10 @@ class CurvePlanner {
 
 }  // namespace
 
+double curves_expected(const geometry::MarkedPieces& pieces, const PlanOptions& options) {
+  return geometry::spans_expected(pieces.pieces, options.max_deviation);
+}
+
 std::optional<OutputPlan> plan_curves(const Run& run, const geometry::SmoothCurve& fair,
                                       const PlanOptions& options) {
   const gcode::CurveFormat* format = options.target->curves;

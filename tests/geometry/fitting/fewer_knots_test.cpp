@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <random>
+#include <stdexcept>
 #include <vector>
 
 #include "geometry/distance/path_distance.h"
@@ -41,6 +42,30 @@ BsplineCurve hairpin() {
       Point3(20, 10, 0), Point3(40.0 / 3, 10, 0), Point3(20.0 / 3, 10, 0),
       Point3(0, 10, 0)};
   return {BsplineBasis(3, knots), points};
+}
+
+// Ten waves on even knots, some thirty to each.
+TEST(FewerKnots, AreAboutAsManyAsTheThirdDerivativeTells) {
+  const int count = 300;
+  std::vector<Point3> points;
+  for (int i = 0; i < count; ++i) points.emplace_back(0.2 * i, std::sin(0.2 * M_PI * 0.2 * i), 0);
+  std::vector<double> knots(4, 0.0);
+  for (int i = 1; i < count - 3; ++i) knots.push_back(0.2 * i);
+  knots.insert(knots.end(), 4, 0.2 * (count - 3));
+  const BsplineCurve curve(BsplineBasis(3, knots), points);
+  const CurvePieces pieces(curve, curve.first(), curve.last());
+  double before = static_cast<double>(pieces.size());
+  for (const double deviation : {0.0005, 0.002, 0.01}) {
+    const auto fewer = on_fewer_knots(curve, {.max_deviation = deviation});
+    ASSERT_TRUE(fewer);
+    const double found = static_cast<double>(fewer->bezier_pieces().size());
+    const double expected = spans_expected(pieces, deviation);
+    EXPECT_GT(expected, 0.4 * found) << deviation;
+    EXPECT_LT(expected, 1.3 * found) << deviation;
+    EXPECT_LT(expected, before);
+    before = expected;
+  }
+  EXPECT_THROW((void)spans_expected(pieces, 0), std::invalid_argument);
 }
 
 TEST(FewerKnots, StaysWithinTheDeviationAndMeetsTheEnds) {

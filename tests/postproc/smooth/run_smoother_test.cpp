@@ -119,6 +119,25 @@ TEST(SmoothRun, WritesTheFormThatWasAskedFor) {
   }
 }
 
+std::size_t curves_of(const std::string& text, const SmoothOptions& options) {
+  const std::vector<Candidate> candidates = OneRun(text).smooth(options).candidates;
+  return static_cast<std::size_t>(std::ranges::count(candidates, Form::kCurves, &Candidate::form));
+}
+
+// Curves of nearly as many blocks as there are lines are made for who asks, or to win time.
+TEST(SmoothRun, MakesCurvesWhereTheyAreFewOrMayWinTime) {
+  const Wave fine{.step = 0.1, .decimals = 5, .feed = 500};
+  const Wave noisy{.step = 0.6, .noise = 0.005, .feed = 500};
+  SmoothOptions options = options_for("siemens");
+  EXPECT_GE(curves_of(wave_program(fine), options), 1U);
+  EXPECT_EQ(curves_of(wave_program(noisy), options), 0U);
+  Wave fast = noisy;
+  fast.feed = 20000;
+  EXPECT_GE(curves_of(wave_program(fast), options), 1U);
+  options.output = Form::kCurves;
+  EXPECT_GE(curves_of(wave_program(noisy), options), 1U);
+}
+
 // Half a circle, in chords that are all on it.
 TEST(SmoothRun, SaysACircleInFewArcs) {
   SmoothOptions options = options_for("linuxcnc");
