@@ -45,8 +45,8 @@ double counted_time(double ratio) {
 
 // What is more than it was counts more than a gain does, since who loses it has not asked for a
 // change; but a run of ten blocks may become one of a hundred, so that it has an end.
-double counted(double ratio, double loss = kCost.loss) {
-  return ratio > 1 ? 1 + loss * (1 - 1 / ratio) : ratio;
+double lost(double ratio, double loss = kCost.loss) {
+  return ratio > 1 ? loss * (1 - 1 / ratio) : 0;
 }
 
 double distance_before(const CostScale& scale) {
@@ -64,14 +64,11 @@ double cost_of(const Figures& figures, const CostScale& scale, Prefer prefer) {
   const double size = size_of(figures, scale.original);
   const bool is_worse =
       figures.blocks > scale.original.blocks || distance > 1 || roughness > kCost.rougher;
-  const auto lost = [](double weight, double ratio, double loss = kCost.loss) {
-    return weight * (counted(std::max(ratio, 1.0), loss) - 1);
-  };
-  const double losses = lost(weights.size, size) + lost(weights.distance, distance) +
-                        lost(weights.roughness, roughness, 1);
-  return weights.time * counted_time(time_of(figures, scale)) + weights.size * counted(size) +
-         weights.distance * counted(distance) + weights.roughness * counted(roughness, 1) +
-         (is_worse ? std::max(0.0, kCost.worse - losses) : 0);
+  const double losses = weights.size * lost(size) + weights.distance * lost(distance) +
+                        weights.roughness * lost(roughness, 1);
+  return weights.time * counted_time(time_of(figures, scale)) + weights.size * std::min(size, 1.0) +
+         weights.distance * std::min(distance, 1.0) + weights.roughness * std::min(roughness, 1.0) +
+         (is_worse ? std::max(losses, kCost.worse) : losses);
 }
 
 bool is_slower(const Times& now, const Times& before, double period) {

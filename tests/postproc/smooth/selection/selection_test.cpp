@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <random>
 #include <utility>
 
 #include "gcode/state/reason.h"
@@ -121,6 +123,26 @@ TEST_F(Choose, TakesWhatIsSlowerByLessThanAnybodyMeasures) {
 // Both take a sixth of the original's time, and one of them a tenth less.
 TEST_F(Choose, CountsATenthOfTheTimeWhereTheOriginalIsFarSlower) {
   EXPECT_EQ(choose({candidate(1.6, 80, 0.001), candidate(1.44, 80, 0.008)}).order, (Order{1, 0}));
+}
+
+// So that what is known of figures at least is a bound on the cost.
+TEST_F(Choose, CostsNoLessWhereAnyFigureIsMore) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> part(0.2, 2);
+  run_.facts.scale.original.roughness = 0.1;
+  for (int i = 0; i < 2000; ++i) {
+    options_.prefer = kAll[i % 3];
+    Figures less = figures(10 * part(random), 100 * part(random), 0.004 * part(random));
+    less.bytes = 2000 * part(random);
+    less.roughness = 0.1 * part(random);
+    for (int which = 0; which < 5; ++which) {
+      Figures more = less;
+      double& one = *std::array{&more.times.programmed, &more.blocks, &more.bytes, &more.distance,
+                                &more.roughness}[static_cast<std::size_t>(which)];
+      one *= 1 + 0.1 * part(random);
+      EXPECT_GE(cost(more), cost(less) - 1e-12) << which;
+    }
+  }
 }
 
 // What makes any figure worse costs a hundredth of the time at least, however little it is.
