@@ -31,6 +31,7 @@ struct RunTuning {
   double takes_much = 0.35;
   double more_room = 3;
   double side_margin = 0.25;  // of the form's share, on the side where the run must not be cut
+  double far_fewer = 0.7;     // of the blocks that there were
   double sharp_corner = 30 * geometry::kPi / 180;  // radians: corners that turn more may stay
   // So many of the pieces are reverted at once that a long run is timed a few times only.
   std::size_t reverted_share = 4;
@@ -216,21 +217,20 @@ class RunSmoother {
     return time;
   }
 
-  // Whether a curve that rounds corners and spends the tolerance may be better: by its time, or
-  // where all there is is a little too slow. Where nothing is better so far, also where few blocks
-  // are wanted or the target is told curves: it is the simpler one, of fewer pieces.
+  // Whether a curve that rounds corners and spends the tolerance may be better: by its time; or,
+  // where nothing is better so far, as the simpler one of fewer pieces: where few blocks are wanted
+  // or the target is told curves, or a form in far fewer blocks is slower.
   [[nodiscard]] bool is_worth_rounding() const {
     if (options().prefer == Prefer::kAccuracy) return false;
-    if (may_win_time()) return true;
+    if (rounding_is_worth_trying(bounds_.least_time(), best_time())) return true;
     const Selection so_far = choose(result_, options());
     if (!so_far.order.empty()) return false;
     const gcode::CurveFormat* curves = options().target->curves;
-    return so_far.reason == gcode::reason::kSlower || wants_few_moves(options()) ||
-           (curves != nullptr && curves->is_default);
-  }
-
-  [[nodiscard]] bool may_win_time() const {
-    return rounding_is_worth_trying(bounds_.least_time(), best_time());
+    if (wants_few_moves(options()) || (curves != nullptr && curves->is_default)) return true;
+    const double few = kRun.far_fewer * result_.facts.scale.original.blocks;
+    return so_far.reason == gcode::reason::kSlower &&
+           std::ranges::any_of(result_.candidates,
+                               [&](const Candidate& c) { return c.figures.blocks <= few; });
   }
 
   const RunTask& task_;

@@ -138,6 +138,16 @@ TEST(SmoothRun, MakesCurvesWhereTheyAreFewOrMayWinTime) {
   EXPECT_GE(curves_of(wave_program(noisy), options), 1U);
 }
 
+// Arcs of the path that was meant are slower than 60 lines about a circle; those of the curve that
+// rounds corners are not.
+TEST(SmoothRun, TriesASimplerCurveWhereFarFewerBlocksAreSlower) {
+  const SmoothOptions options = options_for("grbl");
+  const SmoothedRun smoothed = OneRun(circle_program(60, 2)).smooth(options);
+  const Selection selection = choose(smoothed, options);
+  ASSERT_FALSE(selection.order.empty()) << selection.reason;
+  EXPECT_LE(smoothed.candidates[selection.order.front()].figures.blocks, 30);
+}
+
 // Half a circle, in chords that are all on it.
 TEST(SmoothRun, SaysACircleInFewArcs) {
   SmoothOptions options = options_for("linuxcnc");
