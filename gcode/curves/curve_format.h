@@ -19,6 +19,7 @@
 #include "geometry/basic/point.h"
 #include "geometry/path/bspline_curve.h"
 #include "geometry/path/path.h"
+#include "geometry/path/rational_bezier.h"
 
 namespace batten::gcode {
 
@@ -56,21 +57,36 @@ struct CurveStart {
 
 // A piece of the curve, by the printed numbers.
 struct CurveMotion {
-  std::uint32_t block = 0;  // index into Program::blocks; each block has one piece at the most
+  std::uint32_t block = 0;  // index into Program::blocks
   geometry::PathPiece piece;
 };
 
 struct CurveReading {
   std::uint32_t blocks = 0;          // how many blocks say the curve, from the first on
-  std::vector<CurveMotion> motions;  // in order, `block` increasing; they chain
+  std::vector<CurveMotion> motions;  // in order, `block` never less; they chain
+  bool is_near = false;              // the pieces are within kReadWithin of the curve, not exact
   std::array<bool, 3> axes = {false, false, false};  // named by its blocks
   int decimals = 0;            // most digits after the point of the places that its blocks name
   std::optional<double> feed;  // F of the first block, in the program's units per minute
 };
 
-// A refusal where the blocks are no curve, or one that is not read exactly: a weight that is not 1,
+// A refusal where the blocks are no curve, or one that is not read: a weight that is not positive,
 // other words between, a start that is not the tool's position, the program ends inside it.
 using CurveResult = std::variant<CurveReading, CurveRefusal>;
+
+// Adds what a block says as cubic pieces from `start` to `end`, which are the ends of `piece` but
+// for rounding. False, and nothing is added, where `piece` takes too many.
+[[nodiscard]] bool add_cubics(std::uint32_t block, const geometry::RationalBezier& piece,
+                              const geometry::Point3& start, const geometry::Point3& end,
+                              CurveReading& reading);
+
+// A B-spline with weights, whose first point is where the tool stands and whose spans that are not
+// empty belong to `blocks`, one each. Exact where all weights are the same and the degree is three
+// or less. False where it takes too many pieces.
+[[nodiscard]] bool add_spline(const geometry::BsplineBasis& basis,
+                              std::span<const geometry::Point3> points,
+                              std::span<const double> weights,
+                              std::span<const std::uint32_t> blocks, CurveReading& reading);
 
 // A format as a value: what differs between the curves of controls, and the functions that write
 // and read them.

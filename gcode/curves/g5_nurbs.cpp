@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -13,12 +14,13 @@ namespace batten::gcode {
 namespace {
 
 using geometry::BsplineBasis;
-using geometry::BsplineCurve;
 using geometry::Point3;
 
 constexpr Code kOpens = 52;
 constexpr Code kCloses = 53;
-constexpr double kUsualOrder = 3;
+constexpr double kLeastL = 2;
+constexpr double kUsualL = 3;
+constexpr double kGreatestL = geometry::kMaxDegree + 1;
 
 // A block of words with numbers, none of them beside N and `letters`; G and M as asked.
 bool has_only(const Block& block, const BlockWords& words, std::size_t g_words,
@@ -33,8 +35,6 @@ bool has_only(const Block& block, const BlockWords& words, std::size_t g_words,
   }
   return true;
 }
-
-bool is_one(const Word* weight) { return weight != nullptr && weight->value == 1; }
 
 // Clamped, with steps of 1 between.
 std::vector<double> even_knots(std::size_t points, std::size_t order) {
@@ -53,7 +53,7 @@ class EvenNurbsReader {
   }
 
   CurveResult read(std::uint32_t first) {
-    if (!open(first)) return CurveRefusal{"G5.2 with other words, weights or orders"};
+    if (!open(first)) return CurveRefusal{"G5.2 with other words or orders, or without P"};
     for (std::uint32_t at = first + 1; at < program_.blocks.size(); ++at) {
       const Block& block = program_.blocks[at];
       const BlockWords words(program_.words_of(block));
@@ -63,11 +63,10 @@ class EvenNurbsReader {
       }
       const bool silent = block.opacity == ParseStatus::kNone && !words.has_words();
       if (silent) continue;
-      if (!has_only(block, words, 0, "XYP") || !is_one(words.find('P'))) break;
-      if (!words.has('X') || !words.has('Y')) break;
-      add_point(at, words);
+      if (!has_only(block, words, 0, "XYP") || !words.has('X') || !words.has('Y')) break;
+      if (!add_point(at, words)) break;
     }
-    return CurveRefusal{"no G5.3 behind points with weights of 1"};
+    return CurveRefusal{"no G5.3 behind points with weights"};
   }
 
  private:
@@ -75,20 +74,24 @@ class EvenNurbsReader {
     const Block& block = program_.blocks[first];
     const BlockWords words(program_.words_of(block));
     if (!words.has_g(kOpens) || !has_only(block, words, 1, "XYPLF")) return false;
-    if (words.has('P') && !is_one(words.find('P'))) return false;
     if (words.has('X') != words.has('Y')) return false;
-    const double order = words.has('L') ? words.find('L')->value : kUsualOrder;
-    if (order != std::floor(order) || order < 2 || order > 4) return false;
+    const double order = words.has('L') ? words.find('L')->value : kUsualL;
+    if (order != std::floor(order) || order < kLeastL || order > kGreatestL) {
+      return false;
+    }
     order_ = static_cast<std::size_t>(order);
     if (const Word* feed = words.find('F')) {
       if (!(feed->value > 0)) return false;
       reading_.feed = feed->value;
     }
-    if (words.has('X')) add_point(first, words);
-    return true;
+    if (words.has('X')) return add_point(first, words);
+    return !words.has('P') || words.find('P')->value == 1;  // it belongs to no point
   }
 
-  void add_point(std::uint32_t block, const BlockWords& words) {
+  // False without a weight that is positive.
+  bool add_point(std::uint32_t block, const BlockWords& words) {
+    const Word* weight = words.find('P');
+    if (weight == nullptr || !(weight->value > 0)) return false;
     Point3 point = points_.back();
     for (const int axis : {0, 1}) {
       const Word* word = words.find("XY"[axis]);
@@ -96,17 +99,19 @@ class EvenNurbsReader {
       reading_.decimals = std::max<int>(reading_.decimals, word->decimals);
     }
     points_.push_back(point);
+    weights_.push_back(weight->value);
     blocks_.push_back(block);
+    return true;
   }
 
   CurveResult curve() {
     if (points_.size() < order_) return CurveRefusal{"fewer points than the order"};
-    const BsplineCurve curve(
-        BsplineBasis(static_cast<int>(order_ - 1), even_knots(points_.size(), order_)), points_);
-    // Piece i ends the influence of point i, and begins that of point i + order - 1.
-    std::size_t last = order_ - 2;  // in blocks_, which have no first point
-    for (const geometry::CubicBezier& piece : curve.bezier_pieces()) {
-      reading_.motions.push_back({blocks_[last++], piece});
+    const BsplineBasis basis(static_cast<int>(order_ - 1), even_knots(points_.size(), order_));
+    // Piece i ends the influence of point i, and begins that of point i + order - 1: the first
+    // point has no block.
+    const auto blocks = std::span(blocks_).subspan(order_ - 2);
+    if (!add_spline(basis, points_, weights_, blocks, reading_)) {
+      return CurveRefusal{"weights that are too far apart"};
     }
     return std::move(reading_);
   }
@@ -115,6 +120,7 @@ class EvenNurbsReader {
   double unit_;
   std::size_t order_ = 0;
   std::vector<Point3> points_;         // mm; the first one is the place of the tool
+  std::vector<double> weights_{1.0};   // of them
   std::vector<std::uint32_t> blocks_;  // of all points but the first
   CurveReading reading_;
 };

@@ -118,14 +118,13 @@ class NurbsReader {
 
   CurveResult read(std::uint32_t first) {
     if (!read_blocks(first) || !knots_fit()) return CurveRefusal{trouble_};
-    if (weights_differ_) return CurveRefusal{"weights that differ"};
-    const BsplineCurve curve(BsplineBasis(order_ - 1, knots_), points_);
-    // Piece i belongs to the block of control point i + order - 1.
-    auto span = static_cast<std::size_t>(order_ - 1);
-    for (const geometry::CubicBezier& piece : curve.bezier_pieces()) {
-      while (!(knots_[span] < knots_[span + 1])) ++span;
-      reading_.motions.push_back({point_blocks_[span], piece});
-      ++span;
+    // The span to knot i + 1 belongs to the block of control point i.
+    std::vector<std::uint32_t> blocks;
+    for (auto i = static_cast<std::size_t>(order_ - 1); i < points_.size(); ++i) {
+      if (knots_[i] < knots_[i + 1]) blocks.push_back(point_blocks_[i]);
+    }
+    if (!add_spline(BsplineBasis(order_ - 1, knots_), points_, weights_, blocks, reading_)) {
+      return CurveRefusal{"weights that are too far apart"};
     }
     return std::move(reading_);
   }
@@ -208,9 +207,8 @@ class NurbsReader {
     reading_.decimals = std::max(reading_.decimals, block.decimals);
     knots_.push_back(*block.knot);
     point_blocks_.push_back(at);
-    const double weight = block.weight.value_or(1);
-    weights_differ_ |= weight != std::exchange(weight_, weight) && points_.size() > 1;
-    return weight > 0 || fail("a weight that is not positive");
+    weights_.push_back(block.weight.value_or(1));
+    return weights_.back() > 0 || fail("a weight that is not positive");
   }
 
   bool knots_fit() {
@@ -244,9 +242,8 @@ class NurbsReader {
   CurveReading reading_;
   int order_ = kGreatestOrder;
   std::vector<double> knots_;
-  double weight_ = 1;  // of the last point
-  bool weights_differ_ = false;
-  std::vector<Point3> points_;  // mm; axes that are not named stay where they were
+  std::vector<Point3> points_;   // mm; axes that are not named stay where they were
+  std::vector<double> weights_;  // of them
   std::vector<std::uint32_t> point_blocks_;
   int ending_knots_ = 0;
   std::string trouble_;

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <functional>
 #include <map>
+#include <numeric>
 #include <string>
 #include <utility>
 
@@ -104,6 +105,8 @@ bool is_motion(const SiemensWords::value_type& word) {
   return names_axis(word.first) || word.first.starts_with("PO[");
 }
 
+constexpr std::size_t kMostCoefficients = 5;  // the end and a2 .. a5
+
 // Whether the word belongs to curves that begin with the keyword, or may be beside it.
 bool is_curve_word(const SiemensWords::value_type& word, std::string_view keyword) {
   const std::string& name = word.first;
@@ -111,9 +114,9 @@ bool is_curve_word(const SiemensWords::value_type& word, std::string_view keywor
   const bool poly = keyword == "POLY";
   if (name == "N" || name == keyword || names_axis(name)) return true;
   if (name == "PL" || name == "F") return values.size() == 1;
+  if (name == "PW") return !poly && values.size() == 1 && values.front() > 0;
   if (!poly) return name == "SD" && values == std::vector<double>{3};
   if (name == "G") return values.front() == 90;
-  constexpr std::size_t kMostCoefficients = 5;  // the end and a2 .. a5
   const bool polynomial = name == "PO[X]" || name == "PO[Y]" || name == "PO[Z]" || name == "PO[]";
   return polynomial && !values.empty() && values.size() <= kMostCoefficients;
 }
@@ -129,13 +132,6 @@ std::optional<SiemensWords> curve_words(const Program& program, std::uint32_t at
 }
 
 // --- POLY: writing ------------------------------------------------------------------------------
-
-// a[0] + a[1] t + a[2] t^2 + a[3] t^3 for t from 0 to 1.
-using Coefficients = std::array<Vector3, 4>;
-
-CubicBezier bezier_of(const Coefficients& a) {
-  return {{a[0], a[0] + a[1] / 3, a[0] + (2 * a[1] + a[2]) / 3, a[0] + a[1] + a[2] + a[3]}};
-}
 
 bool is_zero(const std::string& digits) {
   return digits.find_first_not_of("0.") == std::string::npos;
@@ -185,59 +181,86 @@ CurveWriting write_poly(const BsplineCurve& curve, const CurveSetting& setting) 
 
 // --- POLY: reading ------------------------------------------------------------------------------
 
-// The motion of one axis: a line or a polynomial in p from 0 to `length`, whose end and a2, a3 ..
-// are given; in p / length. Nothing above the third degree.
-std::optional<std::array<double, 4>> coefficients_of(double start,
-                                                     const std::vector<double>& values, double unit,
-                                                     double length) {
-  std::array<double, 4> a = {start, 0, 0, 0};
-  double rest = values.front() * unit - start;
+// The coefficients of p / length, p from 0 to `length`, of a polynomial that begins with `start`,
+// and has the end and a2, a3 .. that are given.
+using Polynomial = std::array<double, kMostCoefficients + 1>;
+
+Polynomial polynomial_of(double start, double end, const std::vector<double>& values, double unit,
+                         double length) {
+  Polynomial a{start};
+  double rest = end - start;
   for (std::size_t k = 2; k <= values.size(); ++k) {
-    const double given = values[k - 1] * unit;
-    if (k > 3 && given != 0) return std::nullopt;
-    if (k > 3) continue;
-    a[k] = given * std::pow(length, static_cast<double>(k));
+    a[k] = values[k - 1] * unit * std::pow(length, static_cast<double>(k));
     rest -= a[k];
   }
-  a[1] = rest / length * length;
+  a[1] = rest;
   return a;
 }
 
-// A denominator that says nothing.
-bool is_one(const std::vector<double>& values) {
-  return values.front() == 1 &&
-         std::all_of(values.begin() + 1, values.end(), [](double value) { return value == 0; });
+std::size_t degree_of(const Polynomial& a) {
+  std::size_t degree = a.size() - 1;
+  while (degree > 0 && a[degree] == 0) --degree;
+  return degree;
+}
+
+// The Bernstein coefficients of the polynomials of one block over their whole range.
+geometry::RationalBezier bezier_of(const std::array<Polynomial, 3>& axes,
+                                   const Polynomial& denominator, std::size_t degree) {
+  geometry::RationalBezier piece;
+  for (std::size_t i = 0; i <= degree; ++i) {
+    geometry::WeightedPoint& point = piece.control.emplace_back(geometry::WeightedPoint::Zero());
+    double part = 1;  // binomials (i, k) over (degree, k)
+    for (std::size_t k = 0; k <= i; ++k) {
+      point += part * geometry::WeightedPoint(axes[0][k], axes[1][k], axes[2][k], denominator[k]);
+      part *= static_cast<double>(i - k) / static_cast<double>(degree - k);
+    }
+  }
+  return piece;
 }
 
 // Adds the motion of one block, which moves `position` (mm); why it cannot, or nothing.
 std::string add_poly(std::uint32_t at, const SiemensWords& words, double unit, Position& position,
                      CurveReading& reading) {
-  constexpr const char* kNoCubic = "a polynomial that is rational or above the third degree";
   const double length = value_of(words, "PL").value_or(1);
   if (length < kShortestPoly || length > kLongestPoly) return "PL out of range";
-  const auto* denominator = find(words, "PO[]");
-  if (denominator != nullptr && !is_one(denominator->numbers)) return kNoCubic;
+  Polynomial denominator{1};
+  if (const auto* values = find(words, "PO[]")) {
+    denominator = polynomial_of(1, values->numbers.front(), values->numbers, 1, length);
+  }
+  const double end_weight = std::accumulate(denominator.begin(), denominator.end(), 0.0);
   const Point3 start = position.mm;
-  Coefficients a = {start, Vector3::Zero(), Vector3::Zero(), Vector3::Zero()};
+  std::array<Polynomial, 3> axes{};
+  std::size_t degree = degree_of(denominator);
+  const bool is_rational = degree > 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto i = static_cast<int>(axis);
     const std::string name(1, kAxisNames[axis]);
     const auto* polynomial = find(words, "PO[" + name + "]");
     const auto* values = polynomial != nullptr ? polynomial : find(words, name);
-    if (values == nullptr) continue;  // stays where it is
+    if (values == nullptr) {  // stays where it is: the numerator is as many times the denominator
+      for (std::size_t k = 0; k < denominator.size(); ++k)
+        axes[axis][k] = start[i] * denominator[k];
+      continue;
+    }
     if (!position.known[axis]) return "the tool's position is not known";
     reading.axes[axis] = true;
-    const auto i = static_cast<int>(axis);
     reading.decimals = std::max(reading.decimals, values->decimals);
     position.mm[i] = values->numbers.front() * unit;
-    const auto of_axis = coefficients_of(start[i], values->numbers, unit, length);
-    if (!of_axis) return kNoCubic;
-    for (std::size_t k = 1; k < a.size(); ++k) a[k][i] = (*of_axis)[k];
+    axes[axis] =
+        polynomial_of(start[i], position.mm[i] * end_weight, values->numbers, unit, length);
+    degree = std::max(degree, degree_of(axes[axis]));
   }
-  CubicBezier piece = bezier_of(a);
-  piece.control[3] = position.mm;  // the sum of the coefficients, without their rounding
-  const bool straight = a[2].isZero(0) && a[3].isZero(0);
+  const geometry::RationalBezier piece =
+      bezier_of(axes, denominator, std::max<std::size_t>(degree, 3));
+  if (is_rational || degree > 3) {
+    const bool added = add_cubics(at, piece, start, position.mm, reading);
+    return added ? "" : "a denominator that is not positive everywhere";
+  }
+  CubicBezier cubic;
+  for (std::size_t i = 0; i < 4; ++i) cubic.control[i] = piece.control[i].head<3>();
+  cubic.control[3] = position.mm;  // the sum of the coefficients, without their rounding
   const geometry::PathPiece line = geometry::Line{start, position.mm};
-  reading.motions.push_back({at, straight ? line : geometry::PathPiece(piece)});
+  reading.motions.push_back({at, degree <= 1 ? line : geometry::PathPiece(cubic)});
   return {};
 }
 
@@ -317,6 +340,7 @@ CurveResult read_bspline(const Program& program, std::uint32_t first, const Curv
   const double unit = millimetres_per(start.units);
   CurveReading reading;
   std::vector<Point3> points = {start.position.mm};
+  std::vector<double> weights = {1};
   std::vector<double> lengths;
   for (std::uint32_t at = first; at < program.blocks.size(); ++at) {
     const auto words = curve_words(program, at, "BSPLINE");
@@ -333,18 +357,20 @@ CurveResult read_bspline(const Program& program, std::uint32_t first, const Curv
       place[static_cast<int>(axis)] = value->numbers.front() * unit;
     }
     points.push_back(place);
+    weights.push_back(value_of(*words, "PW").value_or(1));
     lengths.push_back(*value_of(*words, "PL"));
   }
   if (lengths.empty()) return CurveRefusal{"no BSPLINE"};
   const std::vector<double> knots = knots_of(lengths);
   if (knots.empty()) return CurveRefusal{"PL of the blocks is no clamped cubic"};
   reading.blocks = static_cast<std::uint32_t>(lengths.size());
-  const BsplineCurve curve(BsplineBasis(static_cast<int>(kDegree), knots), std::move(points));
-  std::uint32_t block = 0;
-  for (const geometry::CubicBezier& piece : curve.bezier_pieces()) {
-    while (lengths[block] == 0) ++block;
-    reading.motions.push_back({first + block, piece});
-    ++block;
+  std::vector<std::uint32_t> blocks;
+  for (std::uint32_t i = 0; i < reading.blocks; ++i) {
+    if (lengths[i] > 0) blocks.push_back(first + i);
+  }
+  const BsplineBasis basis(static_cast<int>(kDegree), knots);
+  if (!add_spline(basis, points, weights, blocks, reading)) {
+    return CurveRefusal{"weights that are too far apart"};
   }
   return reading;
 }

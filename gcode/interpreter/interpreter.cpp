@@ -319,7 +319,9 @@ class Interpreter {
       if (next != curve.motions.end() && next->block == i) {
         meaning_.kind = BlockKind::kMotion;
         meaning_.motion = static_cast<std::int32_t>(read_.motions.size());
-        read_.motions.push_back(motion_of(*next++, curve));
+      }
+      for (; next != curve.motions.end() && next->block == i; ++next) {
+        read_.motions.push_back(motion_of(*next, curve));
       }
       read_.blocks.push_back(meaning_);
     }

@@ -4,6 +4,15 @@
 
 namespace batten::gcode {
 
+std::span<const Motion> motions_of(const Interpretation& read, std::uint32_t block) {
+  const std::int32_t first = read.blocks[block].motion;
+  if (first < 0) return {};
+  const auto rest = std::span(read.motions).subspan(static_cast<std::size_t>(first));
+  std::size_t count = 1;
+  while (count < rest.size() && rest[count].block == rest[0].block) ++count;
+  return rest.first(count);
+}
+
 std::optional<double> least_stated_mm(const Interpretation& read, std::uint32_t first,
                                       std::uint32_t last) {
   // One state for all of them, nearly always.

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <variant>
 #include <vector>
 
@@ -60,11 +61,15 @@ class MotionPath {
   std::unique_ptr<const geometry::PathPiece> bend_;  // an arc or a cubic piece
 };
 
+// mm: curves with weights, or of a degree above three, are read as cubic pieces that are nowhere
+// farther from them. A thousandth of what a control resolves, for their number grows with it.
+inline constexpr double kReadWithin = 1e-6;
+
 enum class MotionKind : std::uint8_t {
   kRapid,  // G0
   kLine,   // G1
   kArc,    // G2, G3
-  kCurve,  // a cubic piece of a curve that is read exactly: ReadOptions::curves
+  kCurve,  // a cubic piece of a curve that is read: ReadOptions::curves
 };
 
 struct Motion {
@@ -78,6 +83,7 @@ struct Motion {
   bool end_known = false;
   std::array<bool, 3> axes_named = {false, false, false};  // X, Y, Z stand in the block
   std::uint8_t curve_decimals = 0;  // of kCurve: most digits after the point of the curve's places
+  bool is_near = false;             // of kCurve: the curve is within kReadWithin of its pieces
   // A Line for kRapid and kLine, an Arc for kArc, a CubicBezier or a Line for kCurve; absolute mm.
   MotionPath piece;
 };
@@ -103,12 +109,12 @@ struct BlockMeaning {
   // Before this block the state and place are not what the block before it left: control can
   // come from elsewhere (a label that is jumped to).
   bool entered_from_elsewhere = false;
-  // One of the blocks that say a curve together, which is read exactly. Each of its pieces is the
-  // motion of one of them. `barrier` is reason::kSpline: they are no blocks that act each for
-  // itself, and stay or are rewritten together.
+  // One of the blocks that say a curve together, which is read. Each of its pieces is a motion of
+  // one of them, which may have several: motions_of. `barrier` is reason::kSpline: they are no
+  // blocks that act each for itself, and stay or are rewritten together.
   bool of_curve = false;
   bool begins_curve = false;      // the first of them
-  std::int32_t motion = -1;       // index into Interpretation::motions, -1: none
+  std::int32_t motion = -1;       // index into Interpretation::motions, the first; -1: none
   std::uint32_t state_after = 0;  // index into Interpretation::states
 };
 
@@ -126,6 +132,9 @@ struct Interpretation {
   // G20 or G21 (or G70/G71 without parameters) stood somewhere, or --units was given.
   bool unit_word_seen = false;
 };
+
+// All that a block does: one, none, or of a curve several.
+[[nodiscard]] std::span<const Motion> motions_of(const Interpretation& read, std::uint32_t block);
 
 // mm: the least tolerance that the program says for a motion of these blocks, the last one
 // included; nothing where it says none.

@@ -149,7 +149,9 @@ class CommonLister : EventLister {
 
   void list_block(const Block& block, const BlockMeaning& meaning) {
     if (meaning.of_curve) {
-      if (meaning.motion >= 0) add_cut(meaning, false);
+      for (const Motion& motion : gcode::motions_of(interpretation_, block_index_)) {
+        add_cut(motion, false);
+      }
       return;
     }
     list_comments(block);

@@ -90,7 +90,9 @@ class ProgramLister : EventLister {
   void list_block(const Block& block, const BlockMeaning& meaning) {
     if (meaning.of_curve) {
       // What the interpreter follows exactly, it follows only where the path alone counts.
-      if (meaning.motion >= 0) add_cut(meaning, state_after().feed_without_point);
+      for (const Motion& motion : gcode::motions_of(interpretation_, block_index_)) {
+        add_cut(motion, state_after().feed_without_point);
+      }
       return;
     }
     if (block.opacity != gcode::ParseStatus::kNone || block.block_delete) {
@@ -310,9 +312,9 @@ ProgramEvent& EventLister::add_event(EventKind kind) {
   return event;
 }
 
-void EventLister::add_cut(const BlockMeaning& meaning, bool feed_without_point) {
-  list_.cuts.push_back(
-      {static_cast<std::uint32_t>(meaning.motion), state_after().feed, feed_without_point});
+void EventLister::add_cut(const Motion& motion, bool feed_without_point) {
+  const auto index = static_cast<std::uint32_t>(&motion - interpretation_.motions.data());
+  list_.cuts.push_back({index, state_after().feed, feed_without_point});
 }
 
 bool EventLister::add_motion(const BlockMeaning& meaning, bool feed_without_point) {
@@ -322,7 +324,7 @@ bool EventLister::add_motion(const BlockMeaning& meaning, bool feed_without_poin
     return true;
   }
   if (!goes_on(motion)) return false;
-  add_cut(meaning, feed_without_point);
+  add_cut(motion, feed_without_point);
   return true;
 }
 

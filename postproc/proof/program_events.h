@@ -170,7 +170,7 @@ class EventLister {
   ProgramEvent& add_event(EventKind kind);
   void add_word(std::string text) { add_event(EventKind::kWord).text = std::move(text); }
   void add_text(std::string text) { add_event(EventKind::kText).text = std::move(text); }
-  void add_cut(const gcode::BlockMeaning& meaning, bool feed_without_point);
+  void add_cut(const gcode::Motion& motion, bool feed_without_point);  // one of the interpretation
   static bool goes_on(const gcode::Motion& motion) {
     return !motion.piece.is_line() || motion.piece.start() != motion.piece.end();
   }

@@ -173,13 +173,25 @@ PartPair without_same_ends(const PartPair& pair) {
   return {pair.before.without(first, last), pair.after.without(first, last)};
 }
 
+// mm: how far the curves of a part may be from the pieces by which they are known.
+double read_within(const Part& part) {
+  for (std::size_t i = 0; i < part.size(); ++i) {
+    if (motion_of(part.cut(i), *part.side->read).is_near) return gcode::kReadWithin;
+  }
+  return 0;
+}
+
 geometry::BandComparison compare(const PartPair& pair, const Promise& promise) {
   const Path before = pair.before.path();
   const Path after = pair.after.path();
-  if (promise.kind == geometry::ToleranceKind::kBand) {
-    return geometry::compare_in_band(before, after, promise.tolerance_mm);
-  }
-  return {geometry::compare_paths(before, after, promise.tolerance_mm), 0, 0};
+  const double within = read_within(pair.before) + read_within(pair.after);
+  const double tolerance = std::max(promise.tolerance_mm - within, geometry::kSamePlace);
+  auto compared =
+      promise.kind == geometry::ToleranceKind::kBand
+          ? geometry::compare_in_band(before, after, tolerance)
+          : geometry::BandComparison{geometry::compare_paths(before, after, tolerance), 0, 0};
+  compared.paths.bounds.at_most += within;
+  return compared;
 }
 
 Stretch stretch_of(const PartPair& pair, double tolerance_mm, geometry::BandComparison compared) {

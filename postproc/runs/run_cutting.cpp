@@ -290,7 +290,10 @@ void add_move_of(std::uint32_t block, const gcode::Program& program,
   const gcode::BlockMeaning& of_block = meaning.blocks[block];
   const RunBlocks blocks(program, meaning);
   if (of_block.motion < 0 || !blocks.moves(block)) return;
-  moves.push_back({blocks.motion(block).piece, *meaning.states[of_block.state_after].feed});
+  for (const gcode::Motion& motion : blocks.motions(block)) {
+    moves.push_back({motion.piece, *meaning.states[of_block.state_after].feed});
+    moves.back().goes_on = &motion != &blocks.motion(block);
+  }
   moves.back().says_speed = blocks.says_speed(block);
 }
 

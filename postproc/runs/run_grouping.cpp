@@ -88,7 +88,7 @@ std::string_view unknown_state(ModalState state) {
 }
 
 // A line or a cubic piece at one height.
-bool is_level(const gcode::MotionPath& path) {
+bool is_at_one_height(const gcode::MotionPath& path) {
   const auto is_as_high = [&](const Point3& point) {
     return std::abs(point.z() - path.start().z()) <= geometry::kSamePlace;
   };
@@ -191,17 +191,19 @@ class RunGrouper {
     if (std::ranges::none_of(chain_, is_bend)) return close_section();
     const std::vector<std::uint32_t> whole = std::exchange(chain_, {});
     std::vector<PrintedMotion> moving;
+    std::vector<std::size_t> first_of;  // by block of the chain: its first motion
     for (const std::uint32_t block : whole) {
-      if (blocks_.moves(block)) moving.push_back(blocks_.printed(block));
+      first_of.push_back(moving.size());
+      blocks_.add_printed(block, moving);
     }
     const ChainJudgement judged = judge_arcs(moving, blocks_.errors_of(whole), tolerance_);
-    std::size_t next = 0;
-    for (const std::uint32_t block : whole) {
+    for (std::size_t k = 0; k < whole.size(); ++k) {
+      const std::uint32_t block = whole[k];
       if (!blocks_.moves(block)) {
         chain_.push_back(block);
         continue;
       }
-      const std::size_t i = next++;
+      const std::size_t i = first_of[k];
       if (judged.starts_part[i] && blocks_.can_start(block)) close_section();
       if (judged.kept[i]) {
         close_section();
@@ -403,11 +405,12 @@ std::vector<std::uint32_t> blocks_of_edges(const Section& section,
   of_edges.reserve(run.points.size());
   auto bend = run.bends.begin();
   for (std::uint32_t block = section.first_block; block <= section.last_block; ++block) {
-    const std::int32_t motion = read.blocks[block].motion;
-    if (motion < 0 || !has_length(read.motions[static_cast<std::size_t>(motion)].piece)) continue;
-    const bool is_bend = bend != run.bends.end() && bend->first == of_edges.size();
-    of_edges.insert(of_edges.end(), is_bend ? bend->last - bend->first : 1, block);
-    if (is_bend) ++bend;
+    for (const gcode::Motion& motion : gcode::motions_of(read, block)) {
+      if (!has_length(motion.piece)) continue;
+      const bool is_bend = bend != run.bends.end() && bend->first == of_edges.size();
+      of_edges.insert(of_edges.end(), is_bend ? bend->last - bend->first : 1, block);
+      if (is_bend) ++bend;
+    }
   }
   return of_edges;
 }
@@ -418,7 +421,10 @@ bool RunBlocks::is_bend(std::uint32_t block) const {
   return arc(block) != nullptr || read_.blocks[block].of_curve;
 }
 
-bool RunBlocks::moves(std::uint32_t block) const { return has_length(motion(block).piece); }
+bool RunBlocks::moves(std::uint32_t block) const {
+  if (!read_.blocks[block].of_curve) return has_length(motion(block).piece);
+  return std::ranges::any_of(motions(block), has_length, &Motion::piece);
+}
 
 RunBlocks::Heading RunBlocks::heading(std::uint32_t block) const {
   const gcode::MotionPath& path = motion(block).piece;
@@ -429,7 +435,8 @@ RunBlocks::Heading RunBlocks::heading(std::uint32_t block) const {
     return about_z && !along ? Heading::kInPlane : Heading::kOther;
   }
   if (read_.blocks[block].of_curve) {
-    return is_level(path) ? Heading::kInPlane : Heading::kOther;
+    const bool level = std::ranges::all_of(motions(block), is_at_one_height, &Motion::piece);
+    return level ? Heading::kInPlane : Heading::kOther;
   }
   const bool across = way.head<2>().cwiseAbs().maxCoeff() > geometry::kSamePlace;
   if (along && !across) return Heading::kAlongZ;
@@ -486,9 +493,13 @@ bool RunBlocks::says_only_functions(std::uint32_t block) const {
                              });
 }
 
-PrintedMotion RunBlocks::printed(std::uint32_t block) const {
-  const gcode::BlockWords words(program_.words_of(program_.blocks[block]));
-  return {motion(block).piece, words.has('R')};
+void RunBlocks::add_printed(std::uint32_t block, std::vector<PrintedMotion>& moving) const {
+  const bool arc = this->arc(block) != nullptr;
+  const bool by_radius =
+      arc && gcode::BlockWords(program_.words_of(program_.blocks[block])).has('R');
+  for (const Motion& motion : motions(block)) {
+    if (has_length(motion.piece)) moving.push_back({motion.piece, by_radius});
+  }
 }
 
 PrintedErrors RunBlocks::errors_of(std::span<const std::uint32_t> blocks) const {
@@ -559,10 +570,15 @@ void RunBlocks::add_motion(std::uint32_t block, double max_chord_error, Run& run
   }
   run.decimals = std::max(run.decimals, decimals_of_places(block));
   if (says_speed(block)) run.speed_words.push_back(run.points.size() - 1);
-  if (is_bend(block)) {
-    append_bend(motion(block).piece, can_start(block), max_chord_error, run);
-  } else {
+  if (!is_bend(block)) {
     run.points.push_back(motion(block).piece.end());
+    return;
+  }
+  bool goes_on = false;
+  for (const Motion& motion : motions(block)) {
+    if (!has_length(motion.piece)) continue;
+    append_bend(motion.piece, !goes_on && can_start(block), max_chord_error, run, goes_on);
+    goes_on = true;
   }
 }
 

@@ -83,6 +83,10 @@ class RunBlocks {
   [[nodiscard]] const gcode::Motion& motion(std::uint32_t block) const {
     return read_.motions[static_cast<std::size_t>(read_.blocks[block].motion)];
   }
+  // All of them: of a block of a curve there may be several.
+  [[nodiscard]] std::span<const gcode::Motion> motions(std::uint32_t block) const {
+    return gcode::motions_of(read_, block);
+  }
   // nullptr where it is no arc.
   [[nodiscard]] const geometry::Arc* arc(std::uint32_t block) const;
   [[nodiscard]] bool is_bend(std::uint32_t block) const;  // an arc, or a piece of a curve
@@ -105,7 +109,8 @@ class RunBlocks {
   // the curve. Controls refuse a bare G2: it cannot be said again.
   [[nodiscard]] bool lends_motion_word(std::uint32_t block) const;
 
-  [[nodiscard]] PrintedMotion printed(std::uint32_t block) const;
+  // Adds the block's motions that are of some length.
+  void add_printed(std::uint32_t block, std::vector<PrintedMotion>& moving) const;
   // As many digits as any of these blocks prints are right.
   [[nodiscard]] PrintedErrors errors_of(std::span<const std::uint32_t> blocks) const;
 

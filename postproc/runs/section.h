@@ -42,6 +42,7 @@ struct RunBend {
   geometry::PathPiece piece;  // a Line only in a curve
   // A run may begin with it: its block says G2 or G3 itself, or begins the curve.
   bool can_start = true;
+  bool goes_on = false;  // it is of the block of the bend before it
 };
 
 // A chain of cutting moves, lines, arcs and curves, with unchanged state that may be rewritten

@@ -31,20 +31,21 @@ void ToleranceScale::add(const gcode::Program& part, const gcode::Interpretation
     const Run* run = std::get_if<Run>(&section.content);
     if (run != nullptr && !first_run_) first_run_ = part.blocks[section.first_block].span;
     for (std::uint32_t i = section.first_block; i <= section.last_block; ++i) {
-      if (read.blocks[i].motion < 0) continue;
-      const gcode::Motion& motion = read.motions[static_cast<std::size_t>(read.blocks[i].motion)];
-      const bool cuts = motion.kind != gcode::MotionKind::kRapid;
-      if (!cuts || !motion.start_known || !motion.end_known) continue;
-      const bool straight = motion.kind == gcode::MotionKind::kLine;
-      if (straight) {
-        take_point(motion.piece.start());
-        take_point(motion.piece.end());
-      } else {
-        for (const double t : kPlaces) take_point(geometry::point_at(motion.piece, t));
+      double length = 0;
+      for (const gcode::Motion& motion : gcode::motions_of(read, i)) {
+        const bool cuts = motion.kind != gcode::MotionKind::kRapid;
+        if (!cuts || !motion.start_known || !motion.end_known) continue;
+        const bool straight = motion.kind == gcode::MotionKind::kLine;
+        if (straight) {
+          take_point(motion.piece.start());
+          take_point(motion.piece.end());
+        } else {
+          for (const double t : kPlaces) take_point(geometry::point_at(motion.piece, t));
+        }
+        if (run == nullptr) continue;
+        length += straight ? (motion.piece.end() - motion.piece.start()).norm()
+                           : geometry::length_of(motion.piece);
       }
-      if (run == nullptr) continue;
-      const double length = straight ? (motion.piece.end() - motion.piece.start()).norm()
-                                     : geometry::length_of(motion.piece);
       if (!(length > 0)) continue;
       ++moves_;
       if (length < tolerance_of(*run, tolerance_mm_)) ++shorter_;

@@ -85,7 +85,9 @@ class ProgramStream {
         ends_.push_back(looked_at_ + 1);
         length_ = 0;
       } else {
-        length_ += length_of(part.meaning.motions[static_cast<std::size_t>(block.motion)]);
+        for (const gcode::Motion& motion : gcode::motions_of(part.meaning, looked_at_)) {
+          length_ += length_of(motion);
+        }
       }
     }
   }

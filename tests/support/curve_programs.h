@@ -60,7 +60,25 @@ inline std::vector<geometry::CubicBezier> curve_pieces(const CurvePath& path = {
   return pieces;
 }
 
-enum class CurveWord { kG5, kG51, kG52, kG062, kPoly, kBspline, kSpl };
+// Those with weights say the same piece with w, w^2 and w^3, which only moves its parameter.
+enum class CurveWord {
+  kG5,
+  kG51,
+  kG52,
+  kG52Weights,
+  kG062,
+  kG062Weights,
+  kPoly,
+  kPolyRational,
+  kBspline,
+  kBsplineWeights,
+  kSpl
+};
+
+inline bool has_weights(CurveWord word) {
+  return word == CurveWord::kG52Weights || word == CurveWord::kG062Weights ||
+         word == CurveWord::kPolyRational || word == CurveWord::kBsplineWeights;
+}
 
 // The blocks of one piece. The first of a program says the mode of Siemens words.
 inline std::string words_of(const geometry::CubicBezier& piece, CurveWord word, bool is_first) {
@@ -75,7 +93,30 @@ inline std::string words_of(const geometry::CubicBezier& piece, CurveWord word, 
     const double d = p[3][axis];
     return said(a, b, c, d);
   };
+  constexpr double kW = 1.25;
   switch (word) {
+    case CurveWord::kG52Weights:
+      return fmt::format("G5.2 P1 L4\n{} P{:.6f}\n{} P{:.6f}\n{} P{:.6f}\nG5.3\n", xy(p[1]), kW,
+                         xy(p[2]), kW * kW, xy(p[3]), kW * kW * kW);
+    case CurveWord::kG062Weights:
+      return fmt::format(
+          "G06.2 P4 K0. {} R1.\nK0. {} R{:.6f}\nK0. {} R{:.6f}\nK0. {} R{:.6f}\n"
+          "K1.\nK1.\nK1.\nK1.\n",
+          xy(p[0]), xy(p[1]), kW, xy(p[2]), kW * kW, xy(p[3]), kW * kW * kW);
+    case CurveWord::kBsplineWeights:
+      return fmt::format("BSPLINE SD=3 {} PW={:.6f} PL=1\n{} PW={:.6f} PL=0\n{} PW={:.6f} PL=0\n",
+                         xy(p[1]), kW, xy(p[2]), kW * kW, xy(p[3]), kW * kW * kW);
+    case CurveWord::kPolyRational: {
+      const auto said = [](double end, double a, double b, double c, double d) {
+        return fmt::format("({:.6f},{:.9f},{:.9f})", end, 3 * (a - 2 * b + c), d - a - 3 * (c - b));
+      };
+      const auto poly = [&](double a, double b, double c, double d) {
+        return said(d, a, kW * b, kW * kW * c, kW * kW * kW * d);
+      };
+      return (is_first ? "POLY PO[X]=" : "PO[X]=") + of_axis(0, poly) +
+             " PO[Y]=" + of_axis(1, poly) +
+             " PO[]=" + said(kW * kW * kW, 1, kW, kW * kW, kW * kW * kW) + "\n";
+    }
     case CurveWord::kG5:
       return fmt::format("G5 {} I{:.4f} J{:.4f} P{:.4f} Q{:.4f}\n", xy(p[3]), p[1].x() - p[0].x(),
                          p[1].y() - p[0].y(), p[2].x() - p[3].x(), p[2].y() - p[3].y());
@@ -129,7 +170,8 @@ inline std::string curve_head(CurveWord word, const geometry::Point3& start) {
         "F2000\n",
         start.x(), start.y());
   }
-  const bool siemens = word == CurveWord::kPoly || word == CurveWord::kBspline;
+  const bool siemens = word == CurveWord::kPoly || word == CurveWord::kPolyRational ||
+                       word == CurveWord::kBspline || word == CurveWord::kBsplineWeights;
   return fmt::format("{} G90 G17 G94\nG0 X{:.3f} Y{:.3f} Z5.\nG1 Z-1. F300.\nF2000.\n",
                      siemens ? "G71" : "G21", start.x(), start.y());
 }

@@ -19,6 +19,7 @@ struct TimedPiece {
   bool rapid = false;  // at the rapid rate; on Klipper at `feed`, the last one
   int bytes = 0;       // of its block, for a control that is fed by a line; 0: not known
   bool says_speed = false;  // of the spindle: LinuxCNC begins such a block at rest
+  bool goes_on = false;     // of the block of the piece before it: a curve in several pieces
 };
 
 // What follows the chain. It matters on LinuxCNC alone, which brakes with half the

@@ -416,8 +416,11 @@ StretchChain stretches_in_one(std::span<const TimedPiece> pieces, const Machine&
   linuxcnc::Queue queue(machine, path, places);
   const bool joins = path != gcode::PathMode::kExactStop && path != gcode::PathMode::kExactPath;
   const double tolerance = joins ? machine.naive_cam_tolerance : 0;
-  for (const auto& timed : linuxcnc::join_within(pieces, tolerance)) {
-    if (!std::holds_alternative<geometry::CubicBezier>(timed.piece)) {
+  const auto joined = linuxcnc::join_within(pieces, tolerance);
+  for (std::size_t k = 0; k < joined.size(); ++k) {
+    const auto& timed = joined[k];
+    const bool is_part = timed.goes_on || (k + 1 < joined.size() && joined[k + 1].goes_on);
+    if (is_part || !std::holds_alternative<geometry::CubicBezier>(timed.piece)) {
       queue.add(timed);
       continue;
     }

@@ -100,10 +100,20 @@ bool slows_unevenly(const PathPiece& bend, double velocity, double even, const M
   return held.least < velocity && held.least < held.greatest * (1 - even);
 }
 
+// mm, of the first of them and those that go on from it.
+double length_of_block(std::span<const TimedPiece> pieces) {
+  double length = geometry::length_of(pieces.front().piece);
+  for (const TimedPiece& piece : pieces.subspan(1)) {
+    if (!piece.goes_on) break;
+    length += geometry::length_of(piece.piece);
+  }
+  return length;
+}
+
 // Rapids end in position, and so does every block of an exact mode.
 bool stops_between(const TimedPiece& before, const TimedPiece& after, gcode::PathMode path) {
-  return before.rapid || after.rapid || path == gcode::PathMode::kExactStop ||
-         path == gcode::PathMode::kExactPath;
+  const bool exact = path == gcode::PathMode::kExactStop || path == gcode::PathMode::kExactPath;
+  return before.rapid || after.rapid || (exact && !after.goes_on);
 }
 
 // mm/s, at a joint that is not a stop. Jerk across the path, at kinks and where the curvature
@@ -126,11 +136,13 @@ StretchChain look_ahead_stretches(std::span<const TimedPiece> pieces, const Mach
   StretchChain chain;
   chain.rules.look_ahead = machine.look_ahead;
   const BezierRule& rule = has_jerk_limit(machine) ? kByJerk : kByAcceleration;
+  double block_length = 0;  // mm
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     const PathPiece& piece = pieces[i].piece;
     const Vector3 axis_velocity = axis_velocities(machine, pieces[i].rapid);
-    const double velocity = std::min({pieces[i].feed / 60, machine.path_feed,
-                                      geometry::length_of(piece) / machine.block_period});
+    if (!pieces[i].goes_on) block_length = length_of_block(pieces.subspan(i));
+    const double velocity =
+        std::min({pieces[i].feed / 60, machine.path_feed, block_length / machine.block_period});
     const auto add = [&](const PathPiece& part, VelocityStretch s) {
       s.length = geometry::length_of(part);
       s.jerk = std::min(mean_limit_on(part, axis_jerks(machine)), machine.path_jerk);

@@ -42,7 +42,9 @@ constexpr std::array kTexts = {
     NotTimedText{reason::kMiscFunction,
                  "M functions of the machine's builder or the user: not timed"},
     NotTimedText{reason::kCannedCycle, "canned cycles that are not followed: not timed"},
-    NotTimedText{reason::kSpline, "splines (G5, G6.2 ..): not timed"},
+    NotTimedText{reason::kSpline,
+                 "splines (G5, G6.2 ..) that are not read, also where no -t "
+                 "says whose they are: not timed"},
     NotTimedText{reason::kProbe, "probing moves: not timed"},
     NotTimedText{reason::kThreading, "threading and tapping moves: not timed"},
     NotTimedText{reason::kSubprogram, "calls of subprograms and macros: not timed"},
@@ -407,14 +409,16 @@ class StepWork {
   // Of a curve that was read exactly: the place before it is known.
   void add_curve_piece() {
     cycle_.reset();
-    if (block_meaning().motion < 0) return;
-    ProgramStep& step = add_step(StepKind::kCut);
-    step.piece = motion().piece;
-    step.feed = feed_along(step.piece);
-    const geometry::Point3& end = motion().piece.end();
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      if (!motion().axes_named[axis]) continue;
-      place_.set_axis(axis, end[static_cast<Eigen::Index>(axis)], Certainty::kKnown);
+    for (const gcode::Motion& motion : gcode::motions_of(*meaning_, index_)) {
+      ProgramStep& step = add_step(StepKind::kCut);
+      step.piece = motion.piece;
+      step.feed = feed_along(step.piece);
+      step.goes_on = &motion != &this->motion();
+      const geometry::Point3& end = motion.piece.end();
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        if (!motion.axes_named[axis]) continue;
+        place_.set_axis(axis, end[static_cast<Eigen::Index>(axis)], Certainty::kKnown);
+      }
     }
   }
 

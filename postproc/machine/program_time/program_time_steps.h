@@ -61,6 +61,7 @@ struct ProgramStep {
   StepKind kind = StepKind::kRest;
   bool stops_after = false;     // G9: exact stop of this block
   bool says_speed = false;      // of the spindle, the one that holds: see TimedPiece
+  bool goes_on = false;         // of the block of the step before it: see TimedPiece
   std::uint16_t control = 0;    // index into ProgramSteps::controls
   std::int32_t tool = kNoTool;  // number of the tool in the spindle
   std::uint32_t line = 0;       // of its block

@@ -530,6 +530,69 @@ TEST(CurveReading, OfPolyReadsTheSampleWithIntervals) {
   EXPECT_LT((at(2, 5, 5) - Point3(70, 9.3, 0)).norm(), 1e-9);
 }
 
+// A quarter circle: programming guide 840D advanced 04.00, p. 5-167.
+TEST(CurveReading, OfPolyReadsADenominator) {
+  const CurveReading reading =
+      read_of(siemens_poly(), "POLY G90 X10 Y0 F100\nPO[X]=(0,-10) PO[Y]=(10) PO[]=(2,1)\nG1 X0\n");
+  EXPECT_EQ(reading.blocks, 2U);
+  EXPECT_TRUE(reading.is_near);
+  ASSERT_GT(reading.motions.size(), 2U);
+  EXPECT_EQ(geometry::start_point(reading.motions[1].piece), Point3(10, 0, 0));
+  EXPECT_EQ(geometry::end_point(reading.motions.back().piece), Point3(0, 10, 0));
+  for (std::size_t i = 1; i < reading.motions.size(); ++i) {
+    EXPECT_EQ(reading.motions[i].block, 1U);
+    for (int k = 0; k <= 10; ++k) {
+      const Point3 on = geometry::point_at(reading.motions[i].piece, k / 10.0);
+      EXPECT_NEAR(on.norm(), 10, kReadWithin);
+    }
+  }
+}
+
+// Z goes evenly with p.
+TEST(CurveReading, OfPolyReadsTheFifthDegree) {
+  const CurveReading reading =
+      read_of(siemens_poly(), "POLY PO[X]=(2,1,1,0,1) PO[Y]=(3,0.5) Z=1 PL=2\n");
+  EXPECT_TRUE(reading.is_near);
+  EXPECT_EQ(reading.axes, (std::array<bool, 3>{true, true, true}));
+  ASSERT_GT(reading.motions.size(), 1U);
+  const double x1 = (2 - 1 * 4 - 1 * 8 - 1 * 32) / 2.0;
+  const double y1 = (3 - 0.5 * 4) / 2;
+  for (const CurveMotion& motion : reading.motions) {
+    for (int k = 0; k <= 8; ++k) {
+      const Point3 on = geometry::point_at(motion.piece, k / 8.0);
+      const double p = 2 * on.z();
+      const Point3 expected(x1 * p + p * p + p * p * p + std::pow(p, 5), y1 * p + 0.5 * p * p,
+                            on.z());
+      EXPECT_LT((on - expected).norm(), kReadWithin) << p;
+    }
+  }
+}
+
+// Quarter of a circle: weights 1, sqrt(1/2), 1.
+TEST(CurveReading, OfG062ReadsWeights) {
+  const CurveReading reading =
+      read_of(fanuc_curves(),
+              "G06.2 P3 K0 X0 Y0 R1\nK0 X0 Y10 R.70710678118654752\nK0 X10 Y10 R1\nK1\nK1\nK1\n");
+  EXPECT_TRUE(reading.is_near);
+  EXPECT_EQ(reading.blocks, 6U);
+  ASSERT_FALSE(reading.motions.empty());
+  for (const CurveMotion& motion : reading.motions) {
+    EXPECT_EQ(motion.block, 2U);
+    for (int k = 0; k <= 10; ++k) {
+      const Point3 on = geometry::point_at(motion.piece, k / 10.0);
+      EXPECT_NEAR((on - Point3(10, 0, 0)).norm(), 10, kReadWithin);
+    }
+  }
+}
+
+TEST(CurveReading, OfG062IsExactWhereAllWeightsAreTheSame) {
+  constexpr const char* kText =
+      "G06.2 K0 X0 Y0 R2\nK0 X1 Y2 R2\nK0 X2 Y0 R2\nK0 X3 Y1 R2\nK1\nK1\nK1\nK1\n";
+  const CurveReading reading = read_of(fanuc_curves(), kText);
+  EXPECT_FALSE(reading.is_near);
+  EXPECT_EQ(reading.motions.size(), 1U);
+}
+
 TEST(CurveReading, OfPolyTakesLinesAndWordsWithAndWithoutBlanks) {
   const CurveReading line =
       read_of(siemens_poly(), "POLY G90 X10 Y0 F100\nPO[X]=(4) PO[]=(1)\nG1 X3\nPO[X]=(4,1)\n");
@@ -626,9 +689,7 @@ TEST(CurveReading, OfG062RefusesWhatIsAnAlarmOfTheControl) {
       {"G06.2 K0 X0 Y0\nK0 X1 Y0\nK0 X2 Y0\nK0 X3 Y0\nK1\nK1 X4 Y0\nK1\nK1\nK1\n",
        "a point after the ending knots"},
       {"G06.2 K0 X0 Y0\nK0 X1 Y0 R0\nK0 X2 Y0\nK0 X3 Y0\nK1\nK1\nK1\nK1\n",
-       "a weight that is not positive"},
-      {"G06.2 P3 K0 X0 Y0 R1\nK0 X0 Y10 R.70710678118654752\nK0 X10 Y10 R1\nK1\nK1\nK1\n",
-       "weights that differ"}};
+       "a weight that is not positive"}};
   expect_refused(fanuc_curves(), Language::kRs274, rows);
 }
 
@@ -643,15 +704,12 @@ TEST(CurveReading, InAFrameRefusesWhatIsOutsideOfOne) {
 }
 
 TEST(CurveReading, OfPolyRefusesWhatItDoesNotUnderstand) {
-  constexpr const char* kNoCubic = "a polynomial that is rational or above the third degree";
-  // The second is a quarter circle: programming guide 840D advanced 04.00, p. 5-167.
-  std::vector<Refused> rows = {
-      {"G1 X1\nPO[X]=(2,1)\n", "no POLY"},
-      {"POLY G90 X10 Y0 F100\nPO[X]=(0,-10) PO[Y]=(10) PO[]=(2,1)\n", kNoCubic},
-      {"POLY PO[X]=(2,1) PL=0.00001\n", "PL out of range"},
-      {"POLY PO[X]=(2,1) PO[]=(1,8)\n", kNoCubic},
-      {"POLY PO[X]=(2,1,1,0,1)\n", kNoCubic},
-      {"G41 D1\nPOLY PO[X]=(2,1)\n", "no POLY"}};
+  constexpr const char* kNegative = "a denominator that is not positive everywhere";
+  std::vector<Refused> rows = {{"G1 X1\nPO[X]=(2,1)\n", "no POLY"},
+                               {"POLY PO[X]=(2,1) PL=0.00001\n", "PL out of range"},
+                               {"POLY PO[X]=(2,1) PO[]=(1,8)\n", kNegative},
+                               {"POLY PO[X]=(2,1) PO[]=(-1)\n", kNegative},
+                               {"G41 D1\nPOLY PO[X]=(2,1)\n", "no POLY"}};
   for (const char* text :
        {"POLY PO[X]=(R1,1)\n", "POLY PO[X]=(2,1) M8\n", "POLY X=R1\n", "POLY X=AC(10)\n",
         "POLY X1=10\n", "POLY MSG(\"a\")\n", "POLY X1EX3\n", "POLY PO[X]=(1,2\n", "POLY PO[X=(1)\n",

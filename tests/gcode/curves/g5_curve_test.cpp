@@ -151,12 +151,54 @@ TEST(G52, OfOrderFourIsCubic) {
   EXPECT_LT((piece.control[2] - Point3(2, 1, -1)).norm(), 1e-12);
 }
 
+// The points of the first order of four, on its first span, with weights: (sum of w b P) / (sum of
+// w b) for Bernstein's b.
+TEST(G52, ReadsWeights) {
+  const CurveResult result = read("G5.2 P1 L4 F50\nX1 Y1 P2\nX2 Y1 P.5\nX3 Y0 P3\nG5.3\n", kOrigin);
+  const auto* reading = std::get_if<CurveReading>(&result);
+  ASSERT_NE(reading, nullptr);
+  EXPECT_TRUE(reading->is_near);
+  const auto on_curve = [](double u) {
+    const double b[] = {std::pow(1 - u, 3), 2 * 3 * u * std::pow(1 - u, 2),
+                        0.5 * 3 * u * u * (1 - u), 3 * std::pow(u, 3)};
+    const double weight = b[0] + b[1] + b[2] + b[3];
+    return Point3((b[1] + 2 * b[2] + 3 * b[3]) / weight, (b[1] + b[2]) / weight, -1);
+  };
+  for (const CurveMotion& motion : reading->motions) {
+    for (int k = 0; k <= 4; ++k) {
+      // X grows with u.
+      const Point3 on = geometry::point_at(motion.piece, k / 4.0);
+      double low = 0;
+      double high = 1;
+      while (high - low > 1e-14) {
+        const double u = 0.5 * (low + high);
+        (on_curve(u).x() < on.x() ? low : high) = u;
+      }
+      EXPECT_LT((on - on_curve(low)).norm(), 2 * kReadWithin);
+    }
+  }
+}
+
+// Orders of five and six, whose pieces are not cubic: the fourth degree between five points.
+TEST(G52, ReadsOrdersAboveFour) {
+  const CurveResult result =
+      read("G5.2 L5\nX1 Y1 P1\nX2 Y1 P1\nX3 Y1 P1\nX4 Y0 P1\nG5.3\n", kOrigin);
+  const auto* reading = std::get_if<CurveReading>(&result);
+  ASSERT_NE(reading, nullptr);
+  const auto middle = reading->motions.size() / 2;
+  ASSERT_GT(reading->motions.size(), 1U);
+  // At a half: (P0 + 4 P1 + 6 P2 + 4 P3 + P4) / 16.
+  EXPECT_LT(
+      (geometry::start_point(reading->motions[middle].piece) - Point3(2, 14.0 / 16, -1)).norm(),
+      kReadWithin);
+}
+
 TEST(G52, RefusesWhatIsNoBsplineOrIsRefusedByTheControl) {
   for (const char* text :
-       {"G5.2 P2 L3\nX1 Y1 P2\nX2 Y1 P2\nX3 Y0 P2\nG5.3", "G5.2 L3\nX1 Y1 P1\nX2 Y1 P.5\nG5.3",
+       {"G5.2 P2 L3\nX1 Y1 P2\nX2 Y1 P2\nX3 Y0 P2\nG5.3", "G5.2 L3\nX1 Y1 P1\nX2 Y1 P0\nG5.3",
         "G5.2 L3\nX1 Y1\nX2 Y1 P1\nG5.3", "G5.2 L3\nX1 P1\nX2 Y1 P1\nG5.3",
         "G5.2 L4\nX1 Y1 P1\nX2 Y1 P1\nG5.3",
-        "G5.2 L5\nX1 Y1 P1\nX2 Y1 P1\nX3 Y1 P1\nX4 Y1 P1\nG5.3",
+        "G5.2 L7\nX1 Y1 P1\nX2 Y1 P1\nX3 Y1 P1\nX4 Y1 P1\nX5 Y2 P1\nX6 Y1 P1\nG5.3",
         "G5.2 L3\nX1 Y1 P1\nG1 X2 Y1\nG5.3", "G5.2 L3\nX1 Y1 P1\nX2 Y1 P1 F9\nG5.3",
         "G5.2 L3\nX1 Y1 P1\nX2 Y1 P1\nG5.3 X3 Y3", "G5.2 L3\nX1 Y1 P1\nX2 Y1 P1\n",
         "G5.2 X1 L3\nX2 Y1 P1\nG5.3", "G5.2 L3\nX1 Y1 P1\nX2 Y1 Z3 P1\nG5.3",

@@ -29,9 +29,13 @@ constexpr CurveCase kCases[] = {
     {"G51", CurveWord::kG51, "linuxcnc"},
     {"G52", CurveWord::kG52, "linuxcnc"},
     {"G5OfGrblHal", CurveWord::kG5, "grblhal"},
+    {"G52Weights", CurveWord::kG52Weights, "linuxcnc"},
     {"G062", CurveWord::kG062, "fanuc"},
+    {"G062Weights", CurveWord::kG062Weights, "fanuc"},
     {"Poly", CurveWord::kPoly, "siemens"},
+    {"PolyRational", CurveWord::kPolyRational, "siemens"},
     {"Bspline", CurveWord::kBspline, "siemens-bspline"},
+    {"BsplineWeights", CurveWord::kBsplineWeights, "siemens-bspline"},
     {"Spl", CurveWord::kSpl, "itnc530"},
 };
 
@@ -84,8 +88,8 @@ TEST_P(CurvesInRuns, AreOneRunOfAllTheirBlocks) {
   EXPECT_EQ(runs[0]->first_block, head);
   EXPECT_EQ(runs[0]->last_block, lines - 3);  // two are behind them
   const postproc::Run& run = std::get<postproc::Run>(runs[0]->content);
-  EXPECT_EQ(motion_count(run), static_cast<std::size_t>(path.pieces));
-  EXPECT_EQ(run.decimals, 3);
+  EXPECT_EQ(std::ranges::count(run.bends, false, &RunBend::goes_on), path.pieces);
+  EXPECT_EQ(run.decimals, GetParam().word == CurveWord::kPolyRational ? 6 : 3);
   EXPECT_LE(run.chord_error, 0.03 * GroupingOptions{}.tolerance_mm * (1 + 1e-9));
   const auto pieces = tests::curve_pieces(path);
   EXPECT_LT((run.points.front() - pieces.front().control[0]).norm(), 1e-9);
@@ -142,12 +146,14 @@ TEST_P(CurvesInRuns, StayWhereTheyAreFair) {
   SmoothOptions fair = options();
   fair.prefer = Prefer::kTime;
   std::string text = program(path);
-  if (GetParam().word == CurveWord::kG52) {
+  if (GetParam().word == CurveWord::kG52 || GetParam().word == CurveWord::kG52Weights) {
     // Five blocks for each piece are no fair way to say them: one curve of all.
     const auto pieces = tests::curve_pieces(path);
+    const int weight = GetParam().word == CurveWord::kG52 ? 1 : 2;
     std::string curve = "G5.2 P1 L3\n";
     for (const geometry::CubicBezier& piece : pieces) {
-      curve += fmt::format("X{:.3f} Y{:.3f} P1\n", piece.control[3].x(), piece.control[3].y());
+      curve +=
+          fmt::format("X{:.3f} Y{:.3f} P{}\n", piece.control[3].x(), piece.control[3].y(), weight);
     }
     text = tests::curve_head(CurveWord::kG52, geometry::Point3::Zero()) + curve + "G5.3\n" +
            tests::curve_tail(CurveWord::kG52);
@@ -219,6 +225,32 @@ TEST_P(CurvesInRuns, StayInTheBandOrAsTheyAre) {
 
 INSTANTIATE_TEST_SUITE_P(Words, CurvesInRuns, testing::ValuesIn(kCases),
                          [](const auto& test) { return std::string(test.param.name); });
+
+// A weight of the old curve is twice as great.
+TEST(CurvesInRuns, WithWeightsAreProvedWithThem) {
+  const gcode::Control& fanuc = *gcode::find_control("fanuc");
+  const std::string text = tests::curve_program({.step = 3}, CurveWord::kG062Weights);
+  SmoothOptions options = options_for("fanuc");
+  options.output = Form::kLines;
+  options.prefer = Prefer::kSize;
+  const std::string after = smoothed(text, options).text;
+  ASSERT_NE(after, text);
+  const std::string heavier = replaced(text, "R1.250000", "R2.500000");
+  EXPECT_TRUE(verdict_by(fanuc, text, after, 0.01).proved());
+  EXPECT_FALSE(verdict_by(fanuc, heavier, after, 0.01).proved());
+}
+
+// The same curve by weights that only move its parameter: known to kReadWithin on each side.
+TEST(CurvesInRuns, WithWeightsAreProvedToNoLessThanTheyAreRead) {
+  const gcode::Control& fanuc = *gcode::find_control("fanuc");
+  constexpr const char* kCurve =
+      "G21 G90 G17 G94\nG0 X0 Y0 Z0\nG06.2 P3 K0 X0 Y0 R{}\nK0 X0 Y10 R{}\nK0 X10 Y10 R{}\nK1\n"
+      "K1\nK1\nG1 X20 F900\nM30\n";
+  const std::string once = fmt::format(fmt::runtime(kCurve), "1.", ".5", "1.");
+  const std::string moved = fmt::format(fmt::runtime(kCurve), "1.", ".55", "1.21");
+  EXPECT_TRUE(verdict_by(fanuc, once, moved, 5 * gcode::kReadWithin).proved());
+  EXPECT_FALSE(verdict_by(fanuc, once, moved, 1.5 * gcode::kReadWithin).proved());
+}
 
 // --- beside lines and arcs ----------------------------------------------------------------------
 
@@ -364,12 +396,12 @@ TEST(CurveGroups, OfBsplineAreWarnedOf) {
   }));
 }
 
-// A weight, a polynomial above the third degree, curves of another control: not read, so not
-// touched.
-TEST(CurveGroups, ThatAreNotReadExactlyAreCopied) {
+// A weight that is not positive, a denominator that is not so everywhere, curves of another
+// control: not read, so not touched.
+TEST(CurveGroups, ThatAreNotReadAreCopied) {
   const std::pair<std::string, const char*> rows[] = {
-      {replaced(tests::curve_program({}, CurveWord::kG52), " P1\nG5.3", " P2\nG5.3"), "linuxcnc"},
-      {replaced(tests::curve_program({}, CurveWord::kPoly), ")\n", ",0,1)\n"), "siemens"},
+      {replaced(tests::curve_program({}, CurveWord::kG52), " P1\nG5.3", " P0\nG5.3"), "linuxcnc"},
+      {replaced(tests::curve_program({}, CurveWord::kPoly), ")\n", ") PO[]=(1,8)\n"), "siemens"},
       {tests::curve_program({}, CurveWord::kG5), "grbl"},
   };
   for (const auto& [text, target] : rows) {

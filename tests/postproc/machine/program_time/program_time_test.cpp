@@ -19,6 +19,7 @@
 #include "postproc/machine/models/cycle_time.h"
 #include "postproc/machine/program_time/program_time_chains.h"
 #include "postproc/machine/program_time/program_time_profile.h"
+#include "tests/support/curve_programs.h"
 #include "tests/support/interpreted.h"
 #include "tests/support/machine_limits.h"
 
@@ -428,6 +429,34 @@ TEST(ProgramTimeOfCurves, IsThatOfTheirLengthWhereTheirControlIsNamed) {
   EXPECT_TRUE(time.not_timed.empty());
   const auto unknown = gcode::interpret(program, {}, found);
   EXPECT_FALSE(time_program(program, unknown, m, from_zero()).not_timed.empty());
+}
+
+// A curve with weights is read as many pieces: no block begins between them, nothing stops there.
+TEST(ProgramTimeOfCurves, IsTheSameWithWeightsThatOnlyMoveTheirParameter) {
+  const auto seconds = [](const char* target, ControllerModel model, tests::CurveWord word,
+                          const char* mode) {
+    tests::CurvePath path{.pieces = 12, .step = 5, .length = 60, .kink = 0};
+    const std::string text = mode + tests::curve_program(path, word);
+    gcode::Diagnostics found;
+    const gcode::Control& control = *gcode::find_control(target);
+    const gcode::Program program =
+        gcode::parse(gcode::SourceText("test.nc", text), control.language, found);
+    const auto read = gcode::interpret(program, {.curves = control.curves}, found);
+    Machine machine = machine_of(model);
+    if (model == ControllerModel::kLookAhead) machine.block_period = 0.02;
+    return time_program(program, read, machine, from_zero()).seconds.sum();
+  };
+  using enum tests::CurveWord;
+  for (const char* mode : {"", "G61\n"}) {
+    const auto fanuc = [&](tests::CurveWord word) {
+      return seconds("fanuc", ControllerModel::kLookAhead, word, mode);
+    };
+    EXPECT_NEAR(fanuc(kG062Weights), fanuc(kG062), 0.005 * fanuc(kG062)) << mode;
+    const auto linuxcnc = [&](tests::CurveWord word) {
+      return seconds("linuxcnc", ControllerModel::kLinuxcnc, word, mode);
+    };
+    EXPECT_NEAR(linuxcnc(kG52Weights), linuxcnc(kG52), 0.01 * linuxcnc(kG52)) << mode;
+  }
 }
 
 // --- tools, slow places -------------------------------------------------------------------------
