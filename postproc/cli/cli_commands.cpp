@@ -682,6 +682,9 @@ TimeCommand time_command(Arguments& in) {
     in.complain(
         "--machine: no machine given; `batten machines` lists them, a file NAME.toml is your own");
   }
+  if (command.target == nullptr && command.machine != nullptr) {
+    command.target = only_control_of(command.machine->model);
+  }
   command.start = start_given(in);
   constexpr auto choice = [](FeedPlanner planner) {
     return Choice<FeedPlanner>{planner, name_of(planner), ""};

@@ -216,7 +216,8 @@ std::vector<OptionRow> time_rows() {
       kMachine,
       kGrblSettings,
       option("target", kValue, "NAME|FILE.toml",
-             "the control the program is written for (batten targets): what G4 P means; or a "
+             "the control the program is written for (batten targets): what G4 P and its splines "
+             "mean; or a "
              "profile of it"),
       kWord,
       kUnits,

@@ -1,5 +1,7 @@
 #include "postproc/options/target_on_machine.h"
 
+#include "gcode/controls/built_in.h"
+
 namespace batten::postproc {
 namespace {
 
@@ -25,6 +27,11 @@ std::shared_ptr<const gcode::Control> target_on_machine(const gcode::Control& ta
   gcode::Control set_up = target;
   set_up.chords = chords;
   return std::make_shared<const gcode::Control>(std::move(set_up));
+}
+
+const gcode::Control* only_control_of(ControllerModel model) {
+  if (model == ControllerModel::kLinuxcnc) return gcode::find_control("linuxcnc");
+  return model == ControllerModel::kGrblhal ? gcode::find_control("grblhal") : nullptr;
 }
 
 }  // namespace batten::postproc

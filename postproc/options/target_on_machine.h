@@ -1,4 +1,4 @@
-// A target as it is set up on a machine.
+// Targets and machines: a target as it is set up on a machine, the one that a machine has.
 #pragma once
 
 #include <memory>
@@ -13,5 +13,9 @@ namespace batten::postproc {
 // has, it is the control itself: then `target` must live as long.
 [[nodiscard]] std::shared_ptr<const gcode::Control> target_on_machine(const gcode::Control& target,
                                                                       const Machine& machine);
+
+// The control that alone runs machines of this model: its curves and dwells are known where a
+// machine is. nullptr where several do.
+[[nodiscard]] const gcode::Control* only_control_of(ControllerModel model);
 
 }  // namespace batten::postproc

@@ -170,6 +170,19 @@ TEST_F(TimeCommandLine, SaysInWordsWhatIsLeftToWin) {
   expect_exit(folder_.batten("time zigzag.nc --machine mill --bound --tolerance -1"), 1);
 }
 
+// A machine of LinuxCNC has its splines; whose they are on others, the target says.
+TEST_F(TimeCommandLine, ReadsTheCurvesOfTheControlThatTheMachineHas) {
+  folder_.put("curve.ngc",
+              "G21 G90 G17\nG0 X0 Y0 Z0\nF600\nG5.2 P1 L3\nX5 Y0 P2\nX5 Y5 P1\nG5.3\nM2\n");
+  const auto not_timed = [this](const std::string& on) {
+    const ProcessResult result = expect_exit(folder_.batten("time curve.ngc --json - " + on), 0);
+    return contains(result.out, "\"spline\"");
+  };
+  EXPECT_FALSE(not_timed("--machine linuxcnc"));
+  EXPECT_TRUE(not_timed("--machine mill"));
+  EXPECT_FALSE(not_timed("--machine mill --target linuxcnc"));
+}
+
 TEST_F(TimeCommandLine, SaysWhatItDoesNotKnow) {
   const ProcessResult result = time("--machine mill");
   EXPECT_TRUE(contains(result.out, "start-unknown")) << result.out;
