@@ -96,6 +96,7 @@ Motion motion_of(const CurveMotion& piece, const CurveReading& curve) {
   motion.axes_named = curve.axes;
   motion.curve_decimals = static_cast<std::uint8_t>(curve.decimals);
   motion.is_near = curve.is_near;
+  motion.arcs = piece.arcs;
   motion.piece = piece.piece;
   return motion;
 }

@@ -59,6 +59,8 @@ struct CurveStart {
 struct CurveMotion {
   std::uint32_t block = 0;  // index into Program::blocks
   geometry::PathPiece piece;
+  float arcs =
+      0;  // into which LinuxCNC cuts it, below 1 where several pieces are one; 0: not known
 };
 
 struct CurveReading {

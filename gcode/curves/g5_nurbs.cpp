@@ -113,7 +113,18 @@ class EvenNurbsReader {
     if (!add_spline(basis, points_, weights_, blocks, reading_)) {
       return CurveRefusal{"weights that are too far apart"};
     }
+    count_arcs();
     return std::move(reading_);
+  }
+
+  // The control makes two arcs of each of 4 N even parts of the parameter, N points.
+  void count_arcs() {
+    const double of_span = 8.0 * static_cast<double>(points_.size()) /
+                           static_cast<double>(points_.size() - order_ + 1);
+    for (CurveMotion& motion : reading_.motions) {
+      const auto pieces = std::ranges::count(reading_.motions, motion.block, &CurveMotion::block);
+      motion.arcs = static_cast<float>(of_span / static_cast<double>(pieces));
+    }
   }
 
   const Program& program_;

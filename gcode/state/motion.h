@@ -84,6 +84,7 @@ struct Motion {
   std::array<bool, 3> axes_named = {false, false, false};  // X, Y, Z stand in the block
   std::uint8_t curve_decimals = 0;  // of kCurve: most digits after the point of the curve's places
   bool is_near = false;             // of kCurve: the curve is within kReadWithin of its pieces
+  float arcs = 0;                   // of kCurve: CurveMotion::arcs
   // A Line for kRapid and kLine, an Arc for kArc, a CubicBezier or a Line for kCurve; absolute mm.
   MotionPath piece;
 };

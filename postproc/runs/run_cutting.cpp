@@ -293,6 +293,7 @@ void add_move_of(std::uint32_t block, const gcode::Program& program,
   for (const gcode::Motion& motion : blocks.motions(block)) {
     moves.push_back({motion.piece, *meaning.states[of_block.state_after].feed});
     moves.back().goes_on = &motion != &blocks.motion(block);
+    moves.back().arcs = motion.arcs;
   }
   moves.back().says_speed = blocks.says_speed(block);
 }

@@ -577,8 +577,9 @@ void RunBlocks::add_motion(std::uint32_t block, double max_chord_error, Run& run
   bool goes_on = false;
   for (const Motion& motion : motions(block)) {
     if (!has_length(motion.piece)) continue;
-    append_bend(motion.piece, !goes_on && can_start(block), max_chord_error, run, goes_on);
-    goes_on = true;
+    append_bend(motion.piece, !goes_on && can_start(block), max_chord_error, run);
+    run.bends.back().arcs = motion.arcs;
+    run.bends.back().goes_on = std::exchange(goes_on, true);
   }
 }
 

@@ -50,10 +50,10 @@ void for_each_motion(const Run& run, std::size_t at, std::size_t last, const Tak
     while (bend != run.bends.end() && bend->last <= first) ++bend;
     if (bend == run.bends.end() || first < bend->first) {
       ++at;
-      take(Line{run.points[first], run.points[at]}, first, false);
+      take(Line{run.points[first], run.points[at]}, first, nullptr);
     } else {
       at = std::min(bend->last, last);
-      take(part_of(*bend, first, at), first, bend->goes_on);
+      take(part_of(*bend, first, at), first, &*bend);
     }
   }
 }
@@ -89,8 +89,7 @@ double scatter_of(double l, const std::optional<JointSteps>& before,
 
 }  // namespace
 
-void append_bend(const PathPiece& piece, bool can_start, double max_chord_error, Run& run,
-                 bool goes_on) {
+void append_bend(const PathPiece& piece, bool can_start, double max_chord_error, Run& run) {
   // Linear interpolation over 1/n of the piece is off by at most this over n^2.
   const double whole = geometry::second_derivative_bound(piece) / 8;
   const auto wanted = static_cast<std::size_t>(std::ceil(std::sqrt(whole / max_chord_error)));
@@ -102,7 +101,7 @@ void append_bend(const PathPiece& piece, bool can_start, double max_chord_error,
         geometry::point_at(piece, static_cast<double>(i) / static_cast<double>(chords)));
   }
   run.points.push_back(geometry::end_point(piece));
-  run.bends.push_back({first, first + chords, piece, can_start, goes_on});
+  run.bends.push_back({first, first + chords, piece, can_start});
   run.chord_error = std::max(run.chord_error,
                              whole / (static_cast<double>(chords) * static_cast<double>(chords)));
 }
@@ -116,7 +115,7 @@ std::size_t motion_count(const Run& run) {
 std::vector<RunMotion> motions_between(const Run& run, std::size_t first, std::size_t last) {
   std::vector<RunMotion> motions;
   motions.reserve(last - first);
-  for_each_motion(run, first, last, [&](const PathPiece& piece, std::size_t at, bool) {
+  for_each_motion(run, first, last, [&](const PathPiece& piece, std::size_t at, const RunBend*) {
     motions.push_back({piece, at});
   });
   return motions;
@@ -157,14 +156,19 @@ std::vector<TimedPiece> timed_pieces(const Run& run, std::size_t first, std::siz
   auto speed = std::ranges::lower_bound(run.speed_words, first);
   double feed = 0;
   gcode::reserve_in_large_pages(pieces, last - first);
-  for_each_motion(run, first, last, [&](const PathPiece& piece, std::size_t at, bool goes_on) {
-    while (next < run.feeds.size() && run.feeds[next].vertex <= at) feed = run.feeds[next++].feed;
-    pieces.push_back({piece, feed});
-    pieces.back().goes_on = goes_on;
-    if (speed == run.speed_words.end() || *speed != at) return;
-    pieces.back().says_speed = true;
-    ++speed;
-  });
+  for_each_motion(run, first, last,
+                  [&](const PathPiece& piece, std::size_t at, const RunBend* bend) {
+                    while (next < run.feeds.size() && run.feeds[next].vertex <= at)
+                      feed = run.feeds[next++].feed;
+                    pieces.push_back({piece, feed});
+                    if (bend != nullptr) {
+                      pieces.back().goes_on = bend->goes_on;
+                      pieces.back().arcs = bend->arcs;
+                    }
+                    if (speed == run.speed_words.end() || *speed != at) return;
+                    pieces.back().says_speed = true;
+                    ++speed;
+                  });
   return pieces;
 }
 

@@ -15,8 +15,8 @@ namespace batten::postproc {
 // Appends an arc or a piece of a curve to the run, whose points hold at least its start. Chords
 // between its vertices leave it by at most `max_chord_error` (mm, > 0); at least four, so that the
 // path bends evenly, but for a piece that is a line: that is one.
-void append_bend(const geometry::PathPiece& piece, bool can_start, double max_chord_error, Run& run,
-                 bool goes_on = false);
+void append_bend(const geometry::PathPiece& piece, bool can_start, double max_chord_error,
+                 Run& run);
 
 [[nodiscard]] std::size_t motion_count(const Run& run);
 

@@ -43,6 +43,7 @@ struct RunBend {
   // A run may begin with it: its block says G2 or G3 itself, or begins the curve.
   bool can_start = true;
   bool goes_on = false;  // it is of the block of the bend before it
+  float arcs = 0;        // of a piece of a curve: CurveMotion::arcs
 };
 
 // A chain of cutting moves, lines, arcs and curves, with unchanged state that may be rewritten

@@ -15,11 +15,12 @@ namespace batten::postproc {
 
 struct TimedPiece {
   geometry::PathPiece piece;
-  double feed = 0;     // mm/min; 0: as fast as the machine cuts
-  bool rapid = false;  // at the rapid rate; on Klipper at `feed`, the last one
-  int bytes = 0;       // of its block, for a control that is fed by a line; 0: not known
+  double feed = 0;          // mm/min; 0: as fast as the machine cuts
+  bool rapid = false;       // at the rapid rate; on Klipper at `feed`, the last one
+  int bytes = 0;            // of its block, for a control that is fed by a line; 0: not known
   bool says_speed = false;  // of the spindle: LinuxCNC begins such a block at rest
   bool goes_on = false;     // of the block of the piece before it: a curve in several pieces
+  float arcs = 0;           // that LinuxCNC makes of a piece of a curve; 0: as of a G5 for itself
 };
 
 // What follows the chain. It matters on LinuxCNC alone, which brakes with half the

@@ -68,15 +68,32 @@ double limit_across(const Vector3& normal, const Vector3& limits) {
   return least_ratio(limits, shares);
 }
 
+namespace {
+
+// Of the axes that it moves, in whichever direction.
+double limit_on_moved_axes(const geometry::CubicBezier& piece, const Vector3& limits) {
+  double least = kNoLimit;
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const bool moves = std::ranges::any_of(piece.control, [&](const geometry::Point3& point) {
+      return std::abs(point[i] - piece.control[0][i]) > geometry::kSamePlace;
+    });
+    if (moves) least = std::min(least, limits[i]);
+  }
+  return least;
+}
+
+}  // namespace
+
 double limit_on(const geometry::PathPiece& piece, const Vector3& limits) {
   if (std::holds_alternative<geometry::Line>(piece)) {
     return limit_along(geometry::direction_at(piece, 0), limits);
   }
-  const auto* arc = std::get_if<geometry::Arc>(&piece);
-  if (arc == nullptr || std::abs(arc->axis.dot(arc->end - arc->start)) > kFlat) {
-    return limits.minCoeff();
+  if (const auto* cubic = std::get_if<geometry::CubicBezier>(&piece)) {
+    return limit_on_moved_axes(*cubic, limits);
   }
-  return limit_across(arc->axis, limits);
+  const auto& arc = std::get<geometry::Arc>(piece);
+  if (std::abs(arc.axis.dot(arc.end - arc.start)) > kFlat) return limits.minCoeff();
+  return limit_across(arc.axis, limits);
 }
 
 double mean_limit_on(const geometry::PathPiece& piece, const Vector3& limits) {

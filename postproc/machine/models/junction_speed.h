@@ -25,7 +25,7 @@ namespace batten::postproc {
 [[nodiscard]] double limit_across(const geometry::Vector3& normal, const geometry::Vector3& limits);
 
 // The same for all directions that the piece turns through: along a line its own, across the axis
-// of a flat arc, otherwise any.
+// of a flat arc, of a cubic piece any of the axes that it moves, otherwise any.
 [[nodiscard]] double limit_on(const geometry::PathPiece& piece, const geometry::Vector3& limits);
 
 // The harmonic mean of what the directions along the piece allow.

@@ -21,6 +21,7 @@ namespace {
 
 using gcode::PathMode;
 using geometry::Arc;
+using geometry::CubicBezier;
 using geometry::Line;
 using geometry::PathPiece;
 using geometry::Point3;
@@ -44,21 +45,21 @@ class Joiner {
  public:
   explicit Joiner(double tolerance) : tolerance_(tolerance) {}
 
-  void add_line(const Point3& from, const Point3& to, const TimedPiece& piece,
-                std::uint32_t index) {
-    if (!ends_.empty() && (piece.feed != open_.feed || !can_reach(to))) flush();
+  // A line of `move`, or half of it.
+  void add_line(const Point3& from, const Point3& to, const JoinedPiece& move) {
+    if (!ends_.empty() && (move.feed != open_.feed || !can_reach(to))) flush();
     if (ends_.empty()) {
       start_ = from;
-      open_ = {piece, index, index};
+      open_ = move;
     }
     ends_.push_back(to - start_);
     end_ = to;
-    open_.last_piece = index;
+    open_.last_piece = move.last_piece;
   }
 
-  void add_other(const TimedPiece& piece, std::uint32_t index) {
+  void add_other(const JoinedPiece& move) {
     flush();
-    joined_.push_back({piece, index, index});
+    joined_.push_back(move);
   }
 
   std::vector<JoinedPiece> finish() {
@@ -93,37 +94,82 @@ class Joiner {
   std::vector<JoinedPiece> joined_;
 };
 
-// Distance of the middle of the arc from the middle of its chord.
-double rise_of(const Arc& arc) {
-  const Point3 middle = geometry::point_at(arc, 0.5);
-  return (middle - (arc.start + arc.end) / 2).norm();
+// Distance of the middle of a bend from the middle of its chord.
+double rise_of(const PathPiece& bend) {
+  const Point3 chord = (geometry::start_point(bend) + geometry::end_point(bend)) / 2;
+  return (geometry::point_at(bend, 0.5) - chord).norm();
 }
 
-bool becomes_lines(const Arc& arc, double tolerance) {
-  const bool flat = std::abs(std::abs(arc.axis.z()) - 1) < kAlongZ;
-  return flat && std::abs(arc.sweep) < std::numbers::pi && rise_of(arc) < tolerance;
+// A part of a curve is flat: the control has curves in XY alone.
+bool becomes_lines(const PathPiece& bend, double tolerance) {
+  if (const auto* arc = std::get_if<Arc>(&bend)) {
+    const bool flat = std::abs(std::abs(arc->axis.z()) - 1) < kAlongZ;
+    if (!flat || std::abs(arc->sweep) >= std::numbers::pi) return false;
+  }
+  return rise_of(bend) < tolerance;
+}
+
+// A Bezier piece for itself runs as this many arcs.
+constexpr double kArcsPerBezier = 32;
+
+// From the start of one to the end of the other, in their directions there.
+CubicBezier joined(const CubicBezier& first, const CubicBezier& last) {
+  const Vector3 out = geometry::direction_at(first, 0);
+  const Vector3 in = geometry::direction_at(last, 1);
+  const double third = (last.control[3] - first.control[0]).norm() / 3;
+  return {{first.control[0], first.control[0] + third * out, last.control[3] - third * in,
+           last.control[3]}};
+}
+
+// Curves as the arcs that the interpreter makes of them: parts of a piece, or several pieces. The
+// rest stays.
+std::vector<JoinedPiece> curves_as_arcs(std::span<const TimedPiece> pieces) {
+  std::vector<JoinedPiece> arcs;
+  arcs.reserve(pieces.size());
+  double open = 0;  // arcs that the pieces so far are of the last one
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    const TimedPiece& timed = pieces[i];
+    const auto index = static_cast<std::uint32_t>(i);
+    const auto* cubic = std::get_if<CubicBezier>(&timed.piece);
+    if (cubic == nullptr) {
+      arcs.push_back({timed, index, index});
+      continue;
+    }
+    const double wanted = timed.arcs > 0 ? timed.arcs : kArcsPerBezier;
+    if (wanted < 1 && timed.goes_on && open + wanted / 2 < 1) {
+      arcs.back().piece = joined(std::get<CubicBezier>(arcs.back().piece), *cubic);
+      arcs.back().last_piece = index;
+      open += wanted;
+      continue;
+    }
+    open = wanted < 1 ? wanted : 0;
+    const double count = std::max(1.0, std::round(wanted));
+    for (double k = 0; k < count; ++k) {
+      JoinedPiece part{timed, index, index};
+      part.piece = geometry::sub_piece(*cubic, k / count, (k + 1) / count);
+      if (geometry::length_of(part.piece) > 0) arcs.push_back(std::move(part));
+    }
+  }
+  return arcs;
 }
 
 // Lines that are joined become one line. Flat arcs in a plane of constant Z whose middle is less
 // than `tolerance` (mm) off the chord become two lines, which then may be joined too. Rapids stay
 // as they are. A tolerance of 0 changes nothing. Cost: linear, since a joined move has some 100
 // parts.
-std::vector<JoinedPiece> join_within(std::span<const TimedPiece> pieces, double tolerance) {
+std::vector<JoinedPiece> join_within(std::vector<JoinedPiece> moves, double tolerance) {
+  if (!(tolerance > 0)) return moves;
   Joiner joiner(tolerance);
-  for (std::size_t i = 0; i < pieces.size(); ++i) {
-    const TimedPiece& timed = pieces[i];
-    const auto index = static_cast<std::uint32_t>(i);
-    const bool joins = tolerance > 0 && !timed.rapid;
-    const auto* arc = std::get_if<Arc>(&timed.piece);
-    const auto* line = std::get_if<Line>(&timed.piece);
-    if (joins && line != nullptr) {
-      joiner.add_line(line->start, line->end, timed, index);
-    } else if (joins && arc != nullptr && becomes_lines(*arc, tolerance)) {
-      const Point3 middle = geometry::point_at(*arc, 0.5);
-      joiner.add_line(arc->start, middle, timed, index);
-      joiner.add_line(middle, arc->end, timed, index);
+  for (const JoinedPiece& move : moves) {
+    const auto* line = std::get_if<Line>(&move.piece);
+    if (!move.rapid && line != nullptr) {
+      joiner.add_line(line->start, line->end, move);
+    } else if (!move.rapid && line == nullptr && becomes_lines(move.piece, tolerance)) {
+      const Point3 middle = geometry::point_at(move.piece, 0.5);
+      joiner.add_line(geometry::start_point(move.piece), middle, move);
+      joiner.add_line(middle, geometry::end_point(move.piece), move);
     } else {
-      joiner.add_other(timed, index);
+      joiner.add_other(move);
     }
   }
   return joiner.finish();
@@ -142,9 +188,6 @@ constexpr double kStopPeriods = 0.5;
 
 // Cycles of the interpreter that a wait for the end of the motion takes; measured: 2.9 to 3.7.
 constexpr double kWaitPeriods = 3;
-
-// A program's Bezier pieces run as this many arcs.
-constexpr int kArcsPerBezier = 32;
 
 // Moves that turn back by more than 178 degrees stop.
 constexpr double kSharpTurn = 2.0 / 180 * std::numbers::pi;
@@ -416,20 +459,8 @@ StretchChain stretches_in_one(std::span<const TimedPiece> pieces, const Machine&
   linuxcnc::Queue queue(machine, path, places);
   const bool joins = path != gcode::PathMode::kExactStop && path != gcode::PathMode::kExactPath;
   const double tolerance = joins ? machine.naive_cam_tolerance : 0;
-  const auto joined = linuxcnc::join_within(pieces, tolerance);
-  for (std::size_t k = 0; k < joined.size(); ++k) {
-    const auto& timed = joined[k];
-    const bool is_part = timed.goes_on || (k + 1 < joined.size() && joined[k + 1].goes_on);
-    if (is_part || !std::holds_alternative<geometry::CubicBezier>(timed.piece)) {
-      queue.add(timed);
-      continue;
-    }
-    for (int i = 0; i < linuxcnc::kArcsPerBezier; ++i) {
-      linuxcnc::JoinedPiece part = timed;
-      part.piece = geometry::sub_piece(timed.piece, double(i) / linuxcnc::kArcsPerBezier,
-                                       double(i + 1) / linuxcnc::kArcsPerBezier);
-      if (geometry::length_of(part.piece) > 0) queue.add(part);
-    }
+  for (const auto& move : linuxcnc::join_within(linuxcnc::curves_as_arcs(pieces), tolerance)) {
+    queue.add(move);
   }
   return queue.finish(end);
 }

@@ -91,7 +91,8 @@ void set_bent(Segment& s, const geometry::PathPiece& piece, const Vector3& veloc
   } else if (const auto* arc = std::get_if<geometry::Arc>(&piece)) {
     set_arc(s, *arc, velocity, acceleration);
   } else {
-    set_bend(s, 1 / curvature, 0, s.length, {velocity.minCoeff(), acceleration.minCoeff()});
+    set_bend(s, 1 / curvature, 0, s.length,
+             {limit_on(piece, velocity), limit_on(piece, acceleration)});
   }
 }
 

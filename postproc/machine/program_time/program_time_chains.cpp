@@ -63,8 +63,8 @@ void ChainCutter::add_motion(const ProgramStep& step, const std::vector<PathCont
   }
   control_ = control;
   // Bytes of blocks before it that made no motion: the line sends them too.
-  chain_.pieces.push_back(
-      {step.piece, step.feed, rapid, std::exchange(sent_, 0), step.says_speed, step.goes_on});
+  chain_.pieces.push_back({step.piece, step.feed, rapid, std::exchange(sent_, 0), step.says_speed,
+                           step.goes_on, step.arcs});
   chain_.steps.push_back(steps_);
   if (step.stops_after) return close(ChainEnd::kStop, use);
   if (chain_.pieces.size() < most_pieces_) return;

@@ -414,6 +414,7 @@ class StepWork {
       step.piece = motion.piece;
       step.feed = feed_along(step.piece);
       step.goes_on = &motion != &this->motion();
+      step.arcs = motion.arcs;
       const geometry::Point3& end = motion.piece.end();
       for (std::size_t axis = 0; axis < 3; ++axis) {
         if (!motion.axes_named[axis]) continue;

@@ -62,6 +62,7 @@ struct ProgramStep {
   bool stops_after = false;     // G9: exact stop of this block
   bool says_speed = false;      // of the spindle, the one that holds: see TimedPiece
   bool goes_on = false;         // of the block of the step before it: see TimedPiece
+  float arcs = 0;               // of a piece of a curve: see TimedPiece
   std::uint16_t control = 0;    // index into ProgramSteps::controls
   std::int32_t tool = kNoTool;  // number of the tool in the spindle
   std::uint32_t line = 0;       // of its block

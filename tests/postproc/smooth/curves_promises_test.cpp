@@ -183,7 +183,8 @@ TEST_P(Curves, AreWrittenWhereTheyAreAskedFor) {
   EXPECT_LT(result.blocks_out, result.blocks_in / 3);
 }
 
-// Twenty waves around a small circle: a G5 for each bend, and LinuxCNC runs each as 32 short arcs.
+// Twenty waves around a small circle: a G5 for each bend, and LinuxCNC runs each as 32 short arcs,
+// which it joins under G64 P Q alone.
 TEST(CurvesOfLinuxcnc, AreWrittenForWhoAsksForThemThoughTheyAreSlow) {
   std::string text = "G21 G90 G17\nG0 X10 Y0 Z5\nG1 Z-1 F12000\n";
   for (int i = 1; i <= 2000; ++i) {
@@ -192,8 +193,11 @@ TEST(CurvesOfLinuxcnc, AreWrittenForWhoAsksForThemThoughTheyAreSlow) {
     text += fmt::format("X{:.4f} Y{:.4f}\n", radius * std::cos(angle), radius * std::sin(angle));
   }
   text += "G0 Z50\nM2\n";
+  Machine joins_nothing = *find_machine("linuxcnc");
+  joins_nothing.naive_cam_tolerance = 0;
   SmoothOptions wanted = options_for("linuxcnc");
   wanted.output = Form::kCurves;
+  wanted.machine = &joins_nothing;
   const SmoothResult result = smoothed(text, wanted);
   EXPECT_TRUE(result.proved);
   ASSERT_EQ(rewritten_runs(result), 1U);

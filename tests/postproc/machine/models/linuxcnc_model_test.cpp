@@ -229,6 +229,44 @@ TEST(LinuxcncTime, StopsAtCornersOfTheExactPath) {
   EXPECT_NEAR(cutting_time(p.chain(), bench_machine(0.01), kG61), expected, 1e-9);
 }
 
+// The quarter of a circle of 20 mm, in which 32 arcs rise by 6 um each over their chords.
+geometry::CubicBezier quarter_of_a_circle() {
+  constexpr double k = 20 * 0.5522847;
+  return {{{20, 0, 0}, {20, k, 0}, {k, 20, 0}, {0, 20, 0}}};
+}
+
+// Of a curve that says how many arcs the control makes of its pieces: 8 of one, one of 8.
+TEST(LinuxcncTime, RunsACurveAsTheArcsThatItsPiecesAre) {
+  const auto moves = [](const Chain& chain) {
+    const auto all =
+        stretches_of(chain, bench_machine(0), kG64, ChainEnd::kStop, WithPositions::kYes);
+    return std::ranges::count(all.places, false, &StretchPlace::is_corner);
+  };
+  TimedPiece whole{quarter_of_a_circle(), 6000};
+  whole.arcs = 8;
+  EXPECT_EQ(moves({whole}), 8);
+  Chain pieces;
+  for (int i = 0; i < 64; ++i) {
+    TimedPiece& piece = pieces.emplace_back(whole);
+    piece.piece = geometry::sub_piece(whole.piece, i / 64.0, (i + 1) / 64.0);
+    piece.goes_on = i > 0;
+    piece.arcs = 0.125;
+  }
+  EXPECT_EQ(moves(pieces), 8);
+  const Machine machine = bench_machine(0);
+  EXPECT_NEAR(cutting_time(pieces, machine, kG64), cutting_time({{whole}}, machine, kG64), 1e-3);
+}
+
+// Measured: curves in XY at 50 mm/s where Z moves at 40 mm/s at most.
+TEST(LinuxcncTime, RunsACurveInXyWhateverZAllows) {
+  Machine machine = bench_machine(0);
+  const Chain curve = {{quarter_of_a_circle(), 6000}};
+  const double time = cutting_time(curve, machine, kG64);
+  machine.axis(Axis::kZ).velocity = 5;
+  machine.axis(Axis::kZ).acceleration = 50;
+  EXPECT_EQ(cutting_time(curve, machine, kG64), time);
+}
+
 // --- naive CAM ----------------------------------------------------------------------------
 
 // The moves that are left, without corners.
@@ -284,6 +322,17 @@ TEST(NaiveCam, TakesFlatArcsOfThePlaneXyForLines) {
   for (Point3* q : {&upright.start, &upright.end, &upright.center}) *q = {q->x(), 0, q->y()};
   upright.axis = -Vector3::UnitY();
   EXPECT_TRUE(std::holds_alternative<Arc>(joined(Chain{{upright, 1000}}, 0.0101)[0]));
+}
+
+TEST(NaiveCam, TakesPartsOfCurvesForLines) {
+  const Chain curve = {{quarter_of_a_circle(), 6000}};
+  EXPECT_EQ(joined_count(curve, 0), 32u);
+  EXPECT_EQ(joined_count(curve, 0.005), 32u);
+  const std::vector<geometry::PathPiece> lines = joined(curve, 0.02);
+  EXPECT_LT(lines.size(), 30u);
+  for (const geometry::PathPiece& line : lines) {
+    EXPECT_TRUE(std::holds_alternative<geometry::Line>(line));
+  }
 }
 
 TEST(NaiveCam, IsOffUnderTheExactPath) {
