@@ -228,7 +228,9 @@ std::vector<OptionRow> time_rows() {
              "what moves the axes: the machine's control; the least time within the limits of each "
              "axis, jerk among them; or S-curves from bend to bend [Naseath 2007]",
              "control"),
-      option("bound", kFlag, "", "tell how much time is left to win in the runs, and where"),
+      option("bound", kFlag, "",
+             "tell how much time is left to win in the runs, and where; not of moves under exact "
+             "stop, which are kept"),
       option("tolerance", kValue, "LENGTH",
              "for --bound: by paths that are so near, 0.01, 0.01mm or 0.0005in; default: on "
              "the path as it is"),
@@ -364,7 +366,9 @@ std::vector<CommandRow> make_command_rows() {
        "  batten time part.nc --machine high-speed --planner jerk\n"
        "The profile has a row for each millisecond: t_s, line, x_mm, y_mm, z_mm,\n"
        "feed_mm_per_min, then acceleration (mm/s2) and jerk (mm/s3) of X, Y and Z.\n"
-       "Times are those of the control's model; what the text does not tell is listed."},
+       "Times are those of the control's model; what the text does not tell is listed. With or\n"
+       "without a planner, motion rests at the end of each block under exact stop (G60, G61.1,\n"
+       "G9; G61 on controls that stop for it)."},
       {"batch",
        "Smooth all programs of a folder tree into another one; a run that was stopped goes on.",
        batch_rows(),

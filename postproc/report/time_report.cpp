@@ -126,6 +126,7 @@ Json json_of(const RunBound& run) {
 Json json_of(const TimeBounds& bounds) {
   Json entry = {{"tolerance_mm", bounds.tolerance_mm ? Json(*bounds.tolerance_mm) : Json()}};
   entry.update(json_of(bounds.seconds));
+  entry["exact_stop_moves"] = bounds.exact_stop.cut.moves;
   entry["runs"] = json_list(bounds.runs, [](const RunBound& run) { return json_of(run); });
   return entry;
 }
@@ -136,7 +137,7 @@ std::string left_text(const BoundedTime& seconds) {
                      seconds.time > 0 ? 100 * left / seconds.time : 0);
 }
 
-void add_bounds(const TimeBounds& bounds, std::string& lines) {
+void add_runs(const TimeBounds& bounds, std::string& lines) {
   if (bounds.runs.empty()) {
     lines += titled("to win", "no run that may be rewritten");
     return;
@@ -159,6 +160,15 @@ void add_bounds(const TimeBounds& bounds, std::string& lines) {
   if (bounds.runs.size() > kMostPlaces) {
     lines += titled("", fmt::format("{} more, see --json", bounds.runs.size() - kMostPlaces));
   }
+}
+
+void add_bounds(const TimeBounds& bounds, std::string& lines) {
+  add_runs(bounds, lines);
+  const KeptCause& kept = bounds.exact_stop;
+  if (kept.cut.moves == 0) return;
+  lines += titled("", fmt::format("not in it: {} from line {} on, kept for exact stop (batten "
+                                  "explain {})",
+                                  plural(kept.cut.moves, "move"), kept.first_line, kept.reason));
 }
 
 void add_not_timed(const ProgramTime& time, std::string& lines) {

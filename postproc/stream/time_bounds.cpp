@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <functional>
 #include <variant>
+#include <vector>
 
+#include "gcode/state/reason.h"
 #include "postproc/runs/run_grouping.h"
 #include "postproc/runs/run_path.h"
 #include "postproc/smooth/selection/candidate_bounds.h"
@@ -43,7 +45,8 @@ TimeBounds time_bounds(const gcode::Program& program, const gcode::Interpretatio
   if (tolerance_mm) bounds.seconds.least_within = 0;
   GroupingOptions grouping;
   grouping.tolerance_mm = tolerance_mm.value_or(grouping.tolerance_mm);
-  for (const Section& section : group_runs(program, meaning, grouping)) {
+  const std::vector<Section> sections = group_runs(program, meaning, grouping);
+  for (const Section& section : sections) {
     const Run* run = std::get_if<Run>(&section.content);
     if (run == nullptr) continue;
     const std::uint32_t state = meaning.blocks[section.first_block].state_after;
@@ -53,6 +56,11 @@ TimeBounds time_bounds(const gcode::Program& program, const gcode::Interpretatio
     if (tolerance_mm) *bounds.seconds.least_within += *seconds.least_within;
     bounds.runs.push_back({program.blocks[section.first_block].line,
                            program.blocks[section.last_block].line, seconds});
+  }
+  CauseTally tally;
+  tally.add(program, meaning, sections, grouping);
+  for (const KeptCause& cause : tally.causes().causes) {
+    if (cause.reason == gcode::reason::kExactStop) bounds.exact_stop = cause;
   }
   std::ranges::stable_sort(bounds.runs, std::greater<>(), [](const RunBound& run) {
     return run.seconds.time - run.seconds.least();

@@ -8,6 +8,7 @@
 #include "gcode/interpreter/interpreter.h"
 #include "gcode/text/program.h"
 #include "postproc/machine/machine.h"
+#include "postproc/runs/kept_causes.h"
 
 namespace batten::postproc {
 
@@ -30,6 +31,7 @@ struct TimeBounds {
   std::optional<double> tolerance_mm = {};
   BoundedTime seconds;         // of all runs
   std::vector<RunBound> runs;  // those first in which the most is left
+  KeptCause exact_stop;        // moves that are in no run since they end in an exact stop
 };
 
 // Of the runs that may be rewritten. The bounds leave out what brakes between the ends of a run

@@ -30,7 +30,7 @@ struct Sampled {
 };
 
 Sampled sampled(const RunChain& chain, const Machine& machine, double period) {
-  const PlannedMotion motion(chain.pieces, machine, FeedPlanner::kJerk);
+  const PlannedMotion motion(chain.pieces, machine, FeedPlanner::kJerk, chain.path);
   geometry::Path path;
   std::vector<KinematicPathLimits> limits;
   for (const TimedPiece& piece : chain.pieces) {

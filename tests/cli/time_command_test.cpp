@@ -183,6 +183,22 @@ TEST_F(TimeCommandLine, ReadsTheCurvesOfTheControlThatTheMachineHas) {
   EXPECT_FALSE(not_timed("--machine mill --target linuxcnc"));
 }
 
+// Smoothing keeps moves under exact stop: none of them is in the bound, and the user hears of them.
+TEST_F(TimeCommandLine, SaysWhichMovesExactStopKeepsOutOfWhatIsLeftToWin) {
+  std::string text = zigzag();
+  text.insert(text.find("G0 X50"), "G61\nG1 X20\nX30 Y1\nG64\nG9 X40\nG1 X50\n");
+  folder_.put("stops.nc", text);
+  const std::string command = "time stops.nc --machine high-speed --bound ";
+  const ProcessResult result = expect_exit(folder_.batten(command), 0);
+  EXPECT_TRUE(contains(result.out, "not in it: 3 moves from line 64 on, kept for exact stop"))
+      << result.out;
+  const auto bounds = nlohmann::json::parse(folder_.batten(command + "--json -").out).at("bounds");
+  EXPECT_EQ(bounds.at("exact_stop_moves"), 3);
+  EXPECT_EQ(bounds.at("runs").size(), 1U);
+  folder_.put("stops.nc", zigzag());
+  EXPECT_FALSE(contains(folder_.batten(command).out, "exact stop"));
+}
+
 TEST_F(TimeCommandLine, SaysWhatItDoesNotKnow) {
   const ProcessResult result = time("--machine mill");
   EXPECT_TRUE(contains(result.out, "start-unknown")) << result.out;

@@ -59,6 +59,12 @@ void limit_by_stream(std::span<TimedPiece> pieces, const Machine& machine) {
 
 }  // namespace
 
+// LinuxCNC goes on under G61 where the path does; to grbl and Klipper it says what they do anyhow.
+bool stops_at_block_ends(const Machine& machine, gcode::PathMode path) {
+  return path == gcode::PathMode::kExactStop ||
+         (path == gcode::PathMode::kExactPath && machine.model == ControllerModel::kLookAhead);
+}
+
 std::vector<TimedPiece> with_length_and_feed(std::span<const TimedPiece> pieces,
                                              const Machine& machine, double feed_override) {
   std::vector<TimedPiece> moving;

@@ -62,6 +62,10 @@ enum class WithPositions { kNo, kYes };
                                               const Machine& machine, gcode::PathMode path,
                                               ChainEnd end, WithPositions places);
 
+// Whether the control comes to rest at the end of every block, even where the path runs straight
+// on: under exact stop, and under G61 where that is another word for it.
+[[nodiscard]] bool stops_at_block_ends(const Machine& machine, gcode::PathMode path);
+
 // Seconds from rest to rest. `path` says whether the control blends or keeps the exact path.
 // Pieces without length take no time. Linear cost.
 //

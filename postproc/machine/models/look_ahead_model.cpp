@@ -110,12 +110,6 @@ double length_of_block(std::span<const TimedPiece> pieces) {
   return length;
 }
 
-// Rapids end in position, and so does every block of an exact mode.
-bool stops_between(const TimedPiece& before, const TimedPiece& after, gcode::PathMode path) {
-  const bool exact = path == gcode::PathMode::kExactStop || path == gcode::PathMode::kExactPath;
-  return before.rapid || after.rapid || (exact && !after.goes_on);
-}
-
 // mm/s, at a joint that is not a stop. Jerk across the path, at kinks and where the curvature
 // jumps, is what a plan of the axes makes of it; without a limit on jerk only the speed of the axes
 // counts.
@@ -135,6 +129,7 @@ StretchChain look_ahead_stretches(std::span<const TimedPiece> pieces, const Mach
                                   gcode::PathMode path, WithPositions places) {
   StretchChain chain;
   chain.rules.look_ahead = machine.look_ahead;
+  const bool all_stop = stops_at_block_ends(machine, path);
   const BezierRule& rule = has_jerk_limit(machine) ? kByJerk : kByAcceleration;
   double block_length = 0;  // mm
   for (std::size_t i = 0; i < pieces.size(); ++i) {
@@ -166,9 +161,11 @@ StretchChain look_ahead_stretches(std::span<const TimedPiece> pieces, const Mach
       add_bend(piece, cubic ? rule.halvings : 0, add_bend);
     }
     if (i + 1 == pieces.size()) break;
-    chain.stretches.back().exit_velocity = stops_between(pieces[i], pieces[i + 1], path)
-                                               ? 0
-                                               : joint_velocity(pieces[i], pieces[i + 1], machine);
+    // Rapids end in position.
+    const bool stops =
+        (all_stop && !pieces[i + 1].goes_on) || pieces[i].rapid || pieces[i + 1].rapid;
+    chain.stretches.back().exit_velocity =
+        stops ? 0 : joint_velocity(pieces[i], pieces[i + 1], machine);
   }
   return chain;
 }

@@ -42,25 +42,29 @@ constexpr double kLittle = 0.1;
 // between them.
 class JerkPlan {
  public:
-  JerkPlan(std::span<const TimedPiece> pieces, const Machine& machine)
-      : pieces_(pieces), machine_(machine), along_(s_curve_limits(machine)) {}
+  JerkPlan(std::span<const TimedPiece> pieces, const Machine& machine, bool stops_at_ends)
+      : pieces_(pieces),
+        machine_(machine),
+        along_(s_curve_limits(machine)),
+        stops_at_ends_(stops_at_ends) {}
 
   std::vector<FeedPlanNode> run() {
     for (std::size_t i = 0; i < pieces_.size(); ++i) {
       const double feed = pieces_[i].feed / kMinute;
       const double settled = kSettled * feed * s_curve_change(feed, along_);
       const double length = geometry::length_of(pieces_[i].piece);
-      if (!is_slow(pieces_[i].piece, feed, kSlow / kSettled * settled)) {
-        add(i, 0, 1);
-        continue;
+      double planned_from = 0;
+      if (is_slow(pieces_[i].piece, feed, kSlow / kSettled * settled)) {
+        const double share = settled / length;
+        add(i, 0, share);
+        plan_up_to(feed);
+        run_on(i, 1 - share, (1 - 2 * share) * length);
+        planned_from = 1 - share;
       }
-      const double share = settled / length;
-      add(i, 0, share);
-      plan_up_to(feed);
-      run_on(i, 1 - share, (1 - 2 * share) * length);
-      add(i, 1 - share, 1);
+      add(i, planned_from, 1);
+      const bool is_end = i + 1 == pieces_.size();
+      if (is_end || (stops_at_ends_ && !pieces_[i + 1].goes_on)) plan_up_to(0);
     }
-    plan_up_to(0);
     return std::move(nodes_);
   }
 
@@ -116,6 +120,7 @@ class JerkPlan {
   std::span<const TimedPiece> pieces_;
   const Machine& machine_;
   SCurveLimits along_;
+  bool stops_at_ends_;
   std::vector<geometry::PathPiece> path_;  // that is not yet planned
   std::vector<KinematicPathLimits> limits_;
   std::vector<Part> parts_;
@@ -197,14 +202,16 @@ void add_s_curve(const SCurveNode& from, const SCurveNode& to, double distance,
   add(rounded, acceleration, 0);
 }
 
-std::vector<JerkPhase> by_s_curves(std::span<const TimedPiece> pieces, const Machine& machine) {
+std::vector<JerkPhase> by_s_curves(std::span<const TimedPiece> pieces, const Machine& machine,
+                                   bool stops_at_ends) {
   const SCurveLimits limits = s_curve_limits(machine);
   std::vector<JerkPhase> phases;
   double start_speed = 0;
   double distance = 0;  // mm of the parts before
   for (std::size_t first = 0, i = 1; i <= pieces.size(); ++i) {
     const bool is_end = i == pieces.size();
-    const double joint = is_end ? 0 : s_curve_joint(pieces, i);
+    const bool stops = is_end || (stops_at_ends && !pieces[i + 1].goes_on);
+    const double joint = stops ? 0 : s_curve_joint(pieces, i);
     if (!is_end && joint > 0 && pieces[i].feed == pieces[i - 1].feed) continue;
     const auto nodes =
         s_curve_nodes_of(pieces.subspan(first, i - first), start_speed, joint, limits);
@@ -221,18 +228,19 @@ std::vector<JerkPhase> by_s_curves(std::span<const TimedPiece> pieces, const Mac
 }  // namespace
 
 PlannedMotion::PlannedMotion(std::span<const TimedPiece> pieces, const Machine& machine,
-                             FeedPlanner planner)
+                             FeedPlanner planner, gcode::PathMode path)
     : pieces_(pieces) {
   if (planner == FeedPlanner::kControl) {
     throw std::invalid_argument("PlannedMotion: the model of a control is no plan");
   }
   if (pieces.empty()) return;
+  const bool stops_at_ends = stops_at_block_ends(machine, path);
   if (planner == FeedPlanner::kJerk) {
-    nodes_ = JerkPlan(pieces, machine).run();
+    nodes_ = JerkPlan(pieces, machine, stops_at_ends).run();
     if (!nodes_.empty()) duration_ = nodes_.back().time;
     return;
   }
-  s_curves_.emplace(by_s_curves(pieces, machine));
+  s_curves_.emplace(by_s_curves(pieces, machine, stops_at_ends));
   double end = 0;
   for (const TimedPiece& piece : pieces) ends_.push_back(end += geometry::length_of(piece.piece));
   duration_ = s_curves_->duration();
@@ -281,8 +289,8 @@ std::vector<PlannedPiece> PlannedMotion::times_of_pieces() const {
 }
 
 std::vector<PlannedPiece> planned_chain(std::span<const TimedPiece> pieces, const Machine& machine,
-                                        FeedPlanner planner) {
-  return PlannedMotion(pieces, machine, planner).times_of_pieces();
+                                        FeedPlanner planner, gcode::PathMode path) {
+  return PlannedMotion(pieces, machine, planner, path).times_of_pieces();
 }
 
 }  // namespace batten::postproc

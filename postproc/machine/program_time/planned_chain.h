@@ -40,7 +40,8 @@ struct PlannedPosition {
 
 // A chain from rest to rest in time; `pieces` have a length and a feed each (with_length_and_feed).
 // Blending and what else a control does with corners is left out: where the direction jumps by more
-// than the machine can do within a period, the plan stops.
+// than the machine can do within a period, the plan stops. So it does at the end of each piece
+// where exact stop holds (stops_at_block_ends).
 //
 // By S-curves the machine has the least velocity, acceleration and jerk of its axes, along the path
 // and across it; without a limit on jerk the speed changes at once with all of the acceleration.
@@ -48,7 +49,8 @@ class PlannedMotion {
  public:
   // Keeps a reference to `pieces`. Throws std::invalid_argument for kControl.
   // tests/bench/feed_plan_cost prints how many pieces a second kJerk plans.
-  PlannedMotion(std::span<const TimedPiece> pieces, const Machine& machine, FeedPlanner planner);
+  PlannedMotion(std::span<const TimedPiece> pieces, const Machine& machine, FeedPlanner planner,
+                gcode::PathMode path = gcode::PathMode::kBlending);
 
   [[nodiscard]] double duration() const { return duration_; }  // s
 
@@ -70,7 +72,8 @@ class PlannedMotion {
 };
 
 // Of each piece of the chain, as PlannedMotion has them.
-[[nodiscard]] std::vector<PlannedPiece> planned_chain(std::span<const TimedPiece> pieces,
-                                                      const Machine& machine, FeedPlanner planner);
+[[nodiscard]] std::vector<PlannedPiece> planned_chain(
+    std::span<const TimedPiece> pieces, const Machine& machine, FeedPlanner planner,
+    gcode::PathMode path = gcode::PathMode::kBlending);
 
 }  // namespace batten::postproc

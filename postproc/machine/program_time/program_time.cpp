@@ -127,7 +127,8 @@ class StepTimes {
   }
 
   void add_plan(const RunChain& chain) {
-    const std::vector<PlannedPiece> planned = planned_chain(chain.pieces, machine_, planner_);
+    const std::vector<PlannedPiece> planned =
+        planned_chain(chain.pieces, machine_, planner_, chain.path);
     for (std::uint32_t piece = chain.first_counted; piece < chain.end_counted; ++piece) {
       OpenStep& open = open_[chain.steps[piece] - first_open_];
       open.seconds += planned[piece].seconds;

@@ -84,8 +84,8 @@ void ChainCutter::use_part(ChainEnd end, std::size_t end_counted, const Use& use
   machine_.blend_tolerance = control_.blend_tolerance.value_or(base_.blend_tolerance);
   machine_.naive_cam_tolerance = control_.naive_cam_tolerance.value_or(base_.naive_cam_tolerance);
   chain_.pieces = with_length_and_feed(chain_.pieces, machine_);
-  const auto mode = control_.mode == gcode::PathMode::kUnknown ? base_.path_mode : control_.mode;
-  chain_.stretches = stretches_of(chain_.pieces, machine_, mode, end, WithPositions::kYes);
+  chain_.path = control_.mode == gcode::PathMode::kUnknown ? base_.path_mode : control_.mode;
+  chain_.stretches = stretches_of(chain_.pieces, machine_, chain_.path, end, WithPositions::kYes);
   chain_.end_counted = static_cast<std::uint32_t>(end_counted);
   use(chain_);
 }

@@ -16,11 +16,12 @@ namespace batten::postproc {
 
 // Motions from rest to rest, or one wait.
 struct RunChain {
-  StepKind wait = StepKind::kRest;  // meaningful where there are no pieces
-  double seconds = 0;               // of the wait
-  std::vector<TimedPiece> pieces;   // each with a length and a feed
-  std::vector<std::size_t> steps;   // the step of each piece; of a wait its own
-  StretchChain stretches;           // with places
+  StepKind wait = StepKind::kRest;                    // meaningful where there are no pieces
+  double seconds = 0;                                 // of the wait
+  std::vector<TimedPiece> pieces;                     // each with a length and a feed
+  std::vector<std::size_t> steps;                     // the step of each piece; of a wait its own
+  gcode::PathMode path = gcode::PathMode::kBlending;  // that holds
+  StretchChain stretches;                             // with places
   std::uint32_t first_counted = 0;  // pieces of a part of a longer chain that count here
   std::uint32_t end_counted = 0;
 

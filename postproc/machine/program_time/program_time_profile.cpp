@@ -51,7 +51,7 @@ class Sampler {
   }
 
   void run_plan(const RunChain& chain) {
-    const PlannedMotion motion(chain.pieces, machine_, planner_);
+    const PlannedMotion motion(chain.pieces, machine_, planner_, chain.path);
     begin_at_start_of(chain.pieces.front().piece);
     const double end = start_ + motion.duration();
     while (next_time() < end && !stopped_) {

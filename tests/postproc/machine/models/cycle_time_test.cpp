@@ -97,6 +97,15 @@ TEST_P(EveryModel, StopsBetweenBlocksUnderExactStop) {
   EXPECT_LT(time_of({first, second}, m), alone - 0.05);
 }
 
+// G61 keeps the path, which is a stop only on a control that has no other way to.
+TEST_P(EveryModel, StopsAtBlockEndsAsItsControlSays) {
+  const Machine m = machine_of(GetParam());
+  EXPECT_TRUE(stops_at_block_ends(m, PathMode::kExactStop));
+  EXPECT_EQ(stops_at_block_ends(m, PathMode::kExactPath),
+            GetParam() == ControllerModel::kLookAhead);
+  EXPECT_FALSE(stops_at_block_ends(m, PathMode::kBlending));
+}
+
 TEST_P(EveryModel, TakesNoTimeForNothing) {
   const Machine m = machine_of(GetParam());
   EXPECT_EQ(time_of({}, m), 0);

@@ -144,6 +144,29 @@ TEST(PlannedChain, KeepsTheLimitsOfEachPiece) {
   }
 }
 
+// Under exact stop each piece takes what it takes alone, whichever they are.
+TEST(PlannedChain, StopsAtTheEndOfEachPieceUnderExactStop) {
+  std::mt19937 random(7);
+  const Machine machine = machine_with_jerk(30000);
+  std::vector<TimedPiece> chain;
+  for (const geometry::CubicBezier& piece : random_curve(random).bezier_pieces()) {
+    chain.push_back({piece, 600.0 * static_cast<double>(1 + random() % 12)});
+  }
+  const Point3 end = geometry::end_point(chain.back().piece);
+  const geometry::Vector3 way = geometry::direction_at(chain.back().piece, 1);
+  chain.push_back(cut_along(end, end + 3 * way, 1));  // so slow that its middle is not planned
+  chain.push_back(cut_along(end + 3 * way, end + 8 * way));
+  for (const FeedPlanner planner : {FeedPlanner::kJerk, FeedPlanner::kSCurve}) {
+    SCOPED_TRACE(name_of(planner));
+    const auto planned = planned_chain(chain, machine, planner, gcode::PathMode::kExactStop);
+    for (std::size_t i = 0; i < chain.size(); ++i) {
+      const double alone = planned_time_of({chain[i]}, machine, planner);
+      EXPECT_NEAR(planned[i].seconds, alone, 1e-9 * alone) << i;
+    }
+    EXPECT_LT(planned_time_of(chain, machine, planner), seconds_of(planned) - 0.02);
+  }
+}
+
 // At any time it is on its piece, and the pieces take the times that they are said to take.
 TEST(PlannedChain, IsWhereItsTimesSay) {
   const Machine machine = machine_with_jerk(20000);

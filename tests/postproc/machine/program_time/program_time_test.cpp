@@ -459,6 +459,76 @@ TEST(ProgramTimeOfCurves, IsTheSameWithWeightsThatOnlyMoveTheirParameter) {
   }
 }
 
+// --- exact stop ---------------------------------------------------------------------------------
+
+// A zigzag from line 3 on whose corners are so blunt that plans hardly slow down there; lines 23 to
+// 42 have `mode`, or G9 each.
+std::string zigzag_with(const std::string& mode, const std::string& blending = "G64") {
+  std::string text = "G21 G90\nG1 F6000 X0 Y0 Z0\n";
+  for (int i = 1; i <= 60; ++i) {
+    std::string words;
+    if (i == 21 || i == 41) words = (i == 21 ? mode : blending) + " ";
+    if (mode == "G9") words = i > 20 && i <= 40 ? "G9 " : "";
+    text += fmt::format("{}X{} Y{:.5f}\n", words, 2 * i, 0.00008 * (i % 2));
+  }
+  return text + "M2\n";
+}
+
+class ExactStop : public testing::TestWithParam<std::string> {
+ protected:
+  const Machine& machine_ = *find_machine("high-speed");
+  tests::Interpreted program_{zigzag_with(GetParam())};
+
+  [[nodiscard]] double planned(const tests::Interpreted& program, FeedPlanner planner) const {
+    return time_program(program.program, program.read, machine_, from_zero(), planner)
+        .seconds.cutting;
+  }
+};
+
+INSTANTIATE_TEST_SUITE_P(Words, ExactStop, testing::Values("G61", "G61.1", "G60", "G9"),
+                         [](const auto& test) {
+                           std::string name = test.param;
+                           std::erase(name, '.');
+                           return name;
+                         });
+
+TEST_P(ExactStop, CostsAPlanWhatItCostsTheEstimate) {
+  const tests::Interpreted without(zigzag_with("G64"));
+  const double plan = planned(program_, FeedPlanner::kJerk);
+  EXPECT_NEAR(planned(program_, FeedPlanner::kControl), plan, 0.01 * plan);
+  for (const FeedPlanner planner : {FeedPlanner::kJerk, FeedPlanner::kSCurve}) {
+    EXPECT_GT(planned(program_, planner), 1.1 * planned(without, planner)) << name_of(planner);
+  }
+  // Of the machine's own mode, where the program says nothing.
+  Machine machine = machine_;
+  machine.path_mode = gcode::PathMode::kExactStop;
+  const tests::Interpreted silent("G21 G90\nG1 F6000 X0 Y0 Z0\nX10\nX20\nM2\n");
+  const auto seconds = [&](FeedPlanner planner) {
+    return time_program(silent.program, silent.read, machine, from_zero(), planner).seconds.sum();
+  };
+  EXPECT_NEAR(seconds(FeedPlanner::kJerk), seconds(FeedPlanner::kControl), 1e-3);
+}
+
+// At the end of each block in which it holds: over the last whole period before the stop the mean
+// speed is at most 7/6 of what the jerk makes of a period.
+TEST_P(ExactStop, ShowsAsRestInTheProfileOfAPlan) {
+  constexpr double kPeriod = 1e-4;
+  const ProgramSteps steps = read_steps(program_.program, program_.read, from_zero());
+  for (const FeedPlanner planner : {FeedPlanner::kJerk, FeedPlanner::kSCurve}) {
+    std::vector<double> slowest(64, 1e9);  // mm/min near the end of each line
+    const auto see = [&](const ProfileSample& s) {
+      const double left = 2 * (s.line - 2.0) - s.place.x();
+      if (left < 1) slowest.at(s.line) = std::min(slowest.at(s.line), s.feed);
+      return true;
+    };
+    EXPECT_TRUE(sample_program(steps, machine_, kPeriod, see, planner));
+    for (std::size_t line = 23; line <= 42; ++line) {
+      EXPECT_LE(slowest[line], 1e5 * kPeriod * kPeriod * kMinute * 7 / 6 * 1.001) << line;
+    }
+    EXPECT_GT(*std::min_element(slowest.begin() + 4, slowest.begin() + 20), 2000);
+  }
+}
+
 // --- tools, slow places -------------------------------------------------------------------------
 
 TEST(ProgramTimeByTool, GivesEachToolItsOwn) {
