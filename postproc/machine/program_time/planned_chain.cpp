@@ -142,7 +142,9 @@ std::vector<SCurveNode> s_curve_nodes_of(std::span<const TimedPiece> pieces, dou
   double distance = 0;
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     const geometry::PathPiece& piece = pieces[i].piece;
-    const int steps = std::holds_alternative<geometry::Line>(piece) ? 2 : geometry::kNaseathSteps;
+    // Lines and arcs bend evenly, whatever rounding makes of the two radii of an arc.
+    const bool bends_evenly = !std::holds_alternative<geometry::CubicBezier>(piece);
+    const int steps = bends_evenly ? 1 : geometry::kNaseathSteps;
     double way = 0;
     double before = 0;
     for (int k = 0; k < steps; ++k) {

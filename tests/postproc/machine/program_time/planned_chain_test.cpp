@@ -167,6 +167,24 @@ TEST(PlannedChain, StopsAtTheEndOfEachPieceUnderExactStop) {
   }
 }
 
+// As along a line of its length at the speed that it allows, though its printed ends are not on one
+// circle: the greatest speed would be at one of them.
+TEST(PlannedChain, SpeedsUpInOneGoAlongAnArc) {
+  const Machine machine = machine_with_jerk(30000);
+  constexpr double kRadius = 5.743748;
+  constexpr double kSweep = 5;
+  const Point3 center(1.1, 7.081903, 0);
+  const auto at = [&](double angle, double off) -> Point3 {
+    return center + (kRadius + off) * geometry::Vector3(std::cos(angle), std::sin(angle), 0);
+  };
+  const geometry::Arc arc{at(0.3, 1e-7), at(0.3 + kSweep, 0), center, geometry::Vector3::UnitZ(),
+                          kSweep};
+  const double allowed = 60 * std::sqrt(1000 * kRadius);
+  const double along_line = planned_time_of(
+      {cut_along({0, 0, 0}, {kSweep * kRadius, 0, 0}, allowed)}, machine, FeedPlanner::kSCurve);
+  EXPECT_NEAR(planned_time_of({{arc, 60000}}, machine, FeedPlanner::kSCurve), along_line, 1e-5);
+}
+
 // At any time it is on its piece, and the pieces take the times that they are said to take.
 TEST(PlannedChain, IsWhereItsTimesSay) {
   const Machine machine = machine_with_jerk(20000);
