@@ -212,7 +212,7 @@ std::vector<JerkPhase> by_s_curves(std::span<const TimedPiece> pieces, const Mac
   double distance = 0;  // mm of the parts before
   for (std::size_t first = 0, i = 1; i <= pieces.size(); ++i) {
     const bool is_end = i == pieces.size();
-    const bool stops = is_end || (stops_at_ends && !pieces[i + 1].goes_on);
+    const bool stops = is_end || (stops_at_ends && !pieces[i].goes_on);
     const double joint = stops ? 0 : s_curve_joint(pieces, i);
     if (!is_end && joint > 0 && pieces[i].feed == pieces[i - 1].feed) continue;
     const auto nodes =
