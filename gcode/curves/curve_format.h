@@ -19,7 +19,6 @@
 #include "geometry/basic/point.h"
 #include "geometry/path/bspline_curve.h"
 #include "geometry/path/path.h"
-#include "geometry/path/rational_bezier.h"
 
 namespace batten::gcode {
 
@@ -59,8 +58,8 @@ struct CurveStart {
 struct CurveMotion {
   std::uint32_t block = 0;  // index into Program::blocks
   geometry::PathPiece piece;
-  float arcs =
-      0;  // into which LinuxCNC cuts it, below 1 where several pieces are one; 0: not known
+  // Into which LinuxCNC cuts it, below 1 where several pieces are one; 0: not known.
+  float arcs = 0;
 };
 
 struct CurveReading {
@@ -75,20 +74,6 @@ struct CurveReading {
 // A refusal where the blocks are no curve, or one that is not read: a weight that is not positive,
 // other words between, a start that is not the tool's position, the program ends inside it.
 using CurveResult = std::variant<CurveReading, CurveRefusal>;
-
-// Adds what a block says as cubic pieces from `start` to `end`, which are the ends of `piece` but
-// for rounding. False, and nothing is added, where `piece` takes too many.
-[[nodiscard]] bool add_cubics(std::uint32_t block, const geometry::RationalBezier& piece,
-                              const geometry::Point3& start, const geometry::Point3& end,
-                              CurveReading& reading);
-
-// A B-spline with weights, whose first point is where the tool stands and whose spans that are not
-// empty belong to `blocks`, one each. Exact where all weights are the same and the degree is three
-// or less. False where it takes too many pieces.
-[[nodiscard]] bool add_spline(const geometry::BsplineBasis& basis,
-                              std::span<const geometry::Point3> points,
-                              std::span<const double> weights,
-                              std::span<const std::uint32_t> blocks, CurveReading& reading);
 
 // A format as a value: what differs between the curves of controls, and the functions that write
 // and read them.

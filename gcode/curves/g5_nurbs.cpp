@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "gcode/curves/spline_pieces.h"
 #include "gcode/state/block_words.h"
 #include "geometry/path/bspline_curve.h"
 
@@ -121,9 +122,13 @@ class EvenNurbsReader {
   void count_arcs() {
     const double of_span = 8.0 * static_cast<double>(points_.size()) /
                            static_cast<double>(points_.size() - order_ + 1);
-    for (CurveMotion& motion : reading_.motions) {
-      const auto pieces = std::ranges::count(reading_.motions, motion.block, &CurveMotion::block);
-      motion.arcs = static_cast<float>(of_span / static_cast<double>(pieces));
+    std::vector<CurveMotion>& motions = reading_.motions;
+    for (auto first = motions.begin(); first != motions.end();) {
+      const auto last = std::find_if(first, motions.end(), [&](const CurveMotion& motion) {
+        return motion.block != first->block;
+      });
+      const auto arcs = static_cast<float>(of_span / static_cast<double>(last - first));
+      for (; first != last; ++first) first->arcs = arcs;
     }
   }
 

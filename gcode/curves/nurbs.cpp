@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "gcode/curves/curve_print.h"
+#include "gcode/curves/spline_pieces.h"
 #include "geometry/basic/rounding.h"
 
 namespace batten::gcode {

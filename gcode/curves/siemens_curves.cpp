@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "gcode/curves/curve_print.h"
+#include "gcode/curves/spline_pieces.h"
 #include "gcode/siemens/lexer.h"
 #include "gcode/text/characters.h"
 #include "gcode/text/number_format.h"
@@ -211,8 +212,8 @@ geometry::RationalBezier bezier_of(const std::array<Polynomial, 3>& axes,
     geometry::WeightedPoint& point = piece.control.emplace_back(geometry::WeightedPoint::Zero());
     double part = 1;  // binomials (i, k) over (degree, k)
     for (std::size_t k = 0; k <= i; ++k) {
+      if (k > 0) part *= static_cast<double>(i - k + 1) / static_cast<double>(degree - k + 1);
       point += part * geometry::WeightedPoint(axes[0][k], axes[1][k], axes[2][k], denominator[k]);
-      part *= static_cast<double>(i - k) / static_cast<double>(degree - k);
     }
   }
   return piece;
@@ -254,7 +255,7 @@ std::string add_poly(std::uint32_t at, const SiemensWords& words, double unit, P
       bezier_of(axes, denominator, std::max<std::size_t>(degree, 3));
   if (is_rational || degree > 3) {
     const bool added = add_cubics(at, piece, start, position.mm, reading);
-    return added ? "" : "a denominator that is not positive everywhere";
+    return added ? "" : "a denominator that changes too much or is not positive";
   }
   CubicBezier cubic;
   for (std::size_t i = 0; i < 4; ++i) cubic.control[i] = piece.control[i].head<3>();

@@ -65,8 +65,8 @@ constexpr Explanation kExplanations[] = {
     {kThreading, "A thread: the path is tied to the spindle.", kCopied},
     {kSpline,
      "The block is part of a spline that is not read (a weight that is not positive, a degree "
-     "above "
-     "five, words that the target does not have), or whose word or direction a block behind it "
+     "above five, words that the target does not have), or whose word or direction a block behind "
+     "it "
      "needs.",
      "--source names the control that the program was written for where the target has no such "
      "words; let the block behind the spline name its motion (G1). Others are copied as they are."},

@@ -129,25 +129,6 @@ namespace {
 // is zero: cancellation leaves some 1e-15 of it.
 constexpr double kNoSpeed = 1e-12;
 
-// The blossom (polar form) of the polynomial of one span: symmetric, affine in each of its
-// p arguments, and the polynomial itself where all are equal. Control points are blossoms
-// of consecutive knots (L. Ramshaw 1987), so knots need not be inserted one by one.
-Point3 blossom(const BsplineBasis& basis, const std::vector<Point3>& points, std::size_t span,
-               const double* arguments) {
-  const int p = basis.degree();
-  const auto& t = basis.knots();
-  std::array<Point3, kMaxDegree + 1> d;
-  for (int j = 0; j <= p; ++j) d[j] = points[span - p + j];
-  for (int r = 1; r <= p; ++r) {
-    for (int j = p; j >= r; --j) {
-      const std::size_t i = span - p + j;
-      const double alpha = (arguments[r - 1] - t[i]) / (t[i + 1 + p - r] - t[i]);
-      d[j] = (1 - alpha) * d[j - 1] + alpha * d[j];
-    }
-  }
-  return d[p];
-}
-
 }  // namespace
 
 BsplineCurve::BsplineCurve(BsplineBasis basis, std::vector<Point3> control_points)
@@ -235,7 +216,8 @@ BsplineCurve BsplineCurve::part(double from, double to) const {
       if (knots[j + 1] - knots[j] > knots[widest + 1] - knots[widest]) widest = j;
     }
     const double inside = 0.5 * (knots[widest] + knots[widest + 1]);
-    points.push_back(blossom(basis_, control_points_, basis_.find_span(inside), &knots[i + 1]));
+    points.push_back(blossom<Point3>(basis_, control_points_, basis_.find_span(inside),
+                                     std::span(knots).subspan(i + 1, p)));
   }
   return {BsplineBasis(degree(), std::move(knots)), std::move(points)};
 }
@@ -286,7 +268,7 @@ std::vector<CubicBezier> BsplineCurve::bezier_pieces() const {
     for (int bs = 0; bs <= p; ++bs) {
       std::array<double, 3> arguments{};
       for (int j = 0; j < p; ++j) arguments[j] = j < bs ? b : a;
-      q[bs] = blossom(basis_, control_points_, span, arguments.data());
+      q[bs] = blossom<Point3>(basis_, control_points_, span, arguments);
     }
     // Neighbours share their joint to the last bit.
     if (!pieces.empty()) q[0] = pieces.back().control[3];

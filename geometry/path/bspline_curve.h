@@ -1,7 +1,9 @@
 // A polynomial B-spline curve in space.
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "geometry/basic/point.h"
@@ -44,6 +46,27 @@ class BsplineBasis {
   int degree_;
   std::vector<double> knots_;
 };
+
+// The blossom (polar form) of the polynomial of one span: symmetric, affine in each of its
+// arguments, as many as the degree, and the polynomial itself where all are equal. Control points
+// are blossoms of consecutive knots (L. Ramshaw 1987), so knots need not be inserted one by one.
+// Points may be homogeneous.
+template <typename Point>
+Point blossom(const BsplineBasis& basis, std::span<const Point> points, std::size_t span,
+              std::span<const double> arguments) {
+  const auto p = static_cast<std::size_t>(basis.degree());
+  const auto& t = basis.knots();
+  std::array<Point, kMaxDegree + 1> d;
+  for (std::size_t j = 0; j <= p; ++j) d[j] = points[span - p + j];
+  for (std::size_t r = 1; r <= p; ++r) {
+    for (std::size_t j = p; j >= r; --j) {
+      const std::size_t i = span - p + j;
+      const double alpha = (arguments[r - 1] - t[i]) / (t[i + 1 + p - r] - t[i]);
+      d[j] = (1 - alpha) * d[j - 1] + alpha * d[j];
+    }
+  }
+  return d[p];
+}
 
 class BsplineCurve {
  public:

@@ -9,26 +9,8 @@ namespace batten::geometry {
 
 namespace {
 
-constexpr int kMostCubicHalvings = 12;
-
-// The polar form of the curve on a span of its knots (de Boor), with as many arguments as its
-// degree.
-WeightedPoint polar_form(const BsplineBasis& basis, std::span<const WeightedPoint> points,
-                         std::size_t span, std::span<const double> arguments) {
-  const auto degree = static_cast<std::size_t>(basis.degree());
-  const std::vector<double>& t = basis.knots();
-  std::vector<WeightedPoint> d(points.begin() + static_cast<std::ptrdiff_t>(span - degree),
-                               points.begin() + static_cast<std::ptrdiff_t>(span + 1));
-  for (std::size_t level = 1; level <= degree; ++level) {
-    for (std::size_t j = degree; j >= level; --j) {
-      const double from = t[span - degree + j];
-      const double to = t[span + 1 + j - level];
-      const double part = (arguments[level - 1] - from) / (to - from);
-      d[j] = (1 - part) * d[j - 1] + part * d[j];
-    }
-  }
-  return d[degree];
-}
+constexpr int kMostCubicHalvings = 16;
+constexpr std::size_t kMostCubics = 256;
 
 std::pair<RationalBezier, RationalBezier> halves(const RationalBezier& piece) {
   std::vector<WeightedPoint> d = piece.control;
@@ -84,7 +66,7 @@ double distance_bound(const RationalBezier& piece, const CubicBezier& cubic) {
   return bound / least_weight;
 }
 
-// False where so many halvings are not enough.
+// False where so many halvings, or kMostCubics, are not enough.
 bool append_cubics(const RationalBezier& piece, double within, int halvings,
                    std::vector<CubicBezier>& pieces) {
   const bool positive =
@@ -96,7 +78,7 @@ bool append_cubics(const RationalBezier& piece, double within, int halvings,
       return true;
     }
   }
-  if (halvings == 0) return false;
+  if (halvings == 0 || pieces.size() >= kMostCubics) return false;
   const auto [left, right] = halves(piece);
   return append_cubics(left, within, halvings - 1, pieces) &&
          append_cubics(right, within, halvings - 1, pieces);
@@ -127,10 +109,10 @@ std::vector<RationalBezier> rational_pieces(const BsplineBasis& basis,
     if (!(t[span] < t[span + 1])) continue;
     RationalBezier& piece = pieces.emplace_back();
     std::vector<double> arguments(degree, t[span]);
-    piece.control.push_back(polar_form(basis, points, span, arguments));
+    piece.control.push_back(blossom(basis, points, span, arguments));
     for (double& argument : arguments) {
       argument = t[span + 1];
-      piece.control.push_back(polar_form(basis, points, span, arguments));
+      piece.control.push_back(blossom(basis, points, span, arguments));
     }
   }
   return pieces;

@@ -33,7 +33,7 @@ struct RationalBezier {
 // Cubic pieces that chain, each over a half, a quarter .. of the piece, with its ends and its
 // derivatives there, and nowhere farther (mm) from it than `within`, at the same parameter: for the
 // piece P / w and a cubic C the Bernstein coefficients of P - w C over the least weight bound their
-// distance. Nothing where that takes more than 4096 of them, as where a weight is not positive.
+// distance. Nothing where that takes more than 256 of them, as where a weight is not positive.
 [[nodiscard]] std::optional<std::vector<CubicBezier>> cubic_pieces(const RationalBezier& piece,
                                                                    double within);
 

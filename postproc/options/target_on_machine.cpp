@@ -30,8 +30,13 @@ std::shared_ptr<const gcode::Control> target_on_machine(const gcode::Control& ta
 }
 
 const gcode::Control* only_control_of(ControllerModel model) {
-  if (model == ControllerModel::kLinuxcnc) return gcode::find_control("linuxcnc");
-  return model == ControllerModel::kGrblhal ? gcode::find_control("grblhal") : nullptr;
+  const gcode::Control* only = nullptr;
+  for (const gcode::Control& control : gcode::controls()) {
+    if (find_machine(control.machine)->model != model) continue;
+    if (only != nullptr) return nullptr;
+    only = &control;
+  }
+  return only;
 }
 
 }  // namespace batten::postproc

@@ -574,12 +574,15 @@ void RunBlocks::add_motion(std::uint32_t block, double max_chord_error, Run& run
     run.points.push_back(motion(block).piece.end());
     return;
   }
-  bool goes_on = false;
+  RunBend bend;
+  bend.can_start = can_start(block);
   for (const Motion& motion : motions(block)) {
     if (!has_length(motion.piece)) continue;
-    append_bend(motion.piece, !goes_on && can_start(block), max_chord_error, run);
-    run.bends.back().arcs = motion.arcs;
-    run.bends.back().goes_on = std::exchange(goes_on, true);
+    bend.piece = motion.piece;
+    bend.arcs = motion.arcs;
+    append_bend(bend, motions(block).size(), max_chord_error, run);
+    bend.can_start = false;
+    bend.goes_on = true;
   }
 }
 

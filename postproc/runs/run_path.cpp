@@ -89,19 +89,22 @@ double scatter_of(double l, const std::optional<JointSteps>& before,
 
 }  // namespace
 
-void append_bend(const PathPiece& piece, bool can_start, double max_chord_error, Run& run) {
+void append_bend(RunBend bend, std::size_t of_block, double max_chord_error, Run& run) {
+  const PathPiece& piece = bend.piece;
   // Linear interpolation over 1/n of the piece is off by at most this over n^2.
   const double whole = geometry::second_derivative_bound(piece) / 8;
   const auto wanted = static_cast<std::size_t>(std::ceil(std::sqrt(whole / max_chord_error)));
   const bool straight = std::holds_alternative<Line>(piece);
-  const std::size_t chords = std::max(wanted, straight ? 1 : kLeastChords);
-  const std::size_t first = run.points.size() - 1;
+  const std::size_t least = straight ? 1 : std::max<std::size_t>(1, kLeastChords / of_block);
+  const std::size_t chords = std::max(wanted, least);
+  bend.first = run.points.size() - 1;
+  bend.last = bend.first + chords;
   for (std::size_t i = 1; i < chords; ++i) {
     run.points.push_back(
         geometry::point_at(piece, static_cast<double>(i) / static_cast<double>(chords)));
   }
   run.points.push_back(geometry::end_point(piece));
-  run.bends.push_back({first, first + chords, piece, can_start});
+  run.bends.push_back(std::move(bend));
   run.chord_error = std::max(run.chord_error,
                              whole / (static_cast<double>(chords) * static_cast<double>(chords)));
 }
@@ -156,19 +159,18 @@ std::vector<TimedPiece> timed_pieces(const Run& run, std::size_t first, std::siz
   auto speed = std::ranges::lower_bound(run.speed_words, first);
   double feed = 0;
   gcode::reserve_in_large_pages(pieces, last - first);
-  for_each_motion(run, first, last,
-                  [&](const PathPiece& piece, std::size_t at, const RunBend* bend) {
-                    while (next < run.feeds.size() && run.feeds[next].vertex <= at)
-                      feed = run.feeds[next++].feed;
-                    pieces.push_back({piece, feed});
-                    if (bend != nullptr) {
-                      pieces.back().goes_on = bend->goes_on;
-                      pieces.back().arcs = bend->arcs;
-                    }
-                    if (speed == run.speed_words.end() || *speed != at) return;
-                    pieces.back().says_speed = true;
-                    ++speed;
-                  });
+  const auto add = [&](const PathPiece& piece, std::size_t at, const RunBend* bend) {
+    while (next < run.feeds.size() && run.feeds[next].vertex <= at) feed = run.feeds[next++].feed;
+    pieces.push_back({piece, feed});
+    if (bend != nullptr) {
+      pieces.back().goes_on = bend->goes_on;
+      pieces.back().arcs = bend->arcs;
+    }
+    if (speed == run.speed_words.end() || *speed != at) return;
+    pieces.back().says_speed = true;
+    ++speed;
+  };
+  for_each_motion(run, first, last, add);
   return pieces;
 }
 

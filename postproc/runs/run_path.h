@@ -12,11 +12,11 @@
 
 namespace batten::postproc {
 
-// Appends an arc or a piece of a curve to the run, whose points hold at least its start. Chords
-// between its vertices leave it by at most `max_chord_error` (mm, > 0); at least four, so that the
-// path bends evenly, but for a piece that is a line: that is one.
-void append_bend(const geometry::PathPiece& piece, bool can_start, double max_chord_error,
-                 Run& run);
+// Appends an arc or a piece of a curve, one of the `of_block` (1 ..) that its block says, to the
+// run, whose points hold at least its start; `bend.first` and `last` are set here. Chords between
+// its vertices leave it by at most `max_chord_error` (mm, > 0); at least four for a block, so that
+// the path bends evenly, but for a piece that is a line: that is one.
+void append_bend(RunBend bend, std::size_t of_block, double max_chord_error, Run& run);
 
 [[nodiscard]] std::size_t motion_count(const Run& run);
 

@@ -39,7 +39,7 @@ struct CommentAt {
 struct RunBend {
   std::size_t first = 0;  // vertices
   std::size_t last = 0;
-  geometry::PathPiece piece;  // a Line only in a curve
+  geometry::PathPiece piece = {};  // a Line only in a curve
   // A run may begin with it: its block says G2 or G3 itself, or begins the curve.
   bool can_start = true;
   bool goes_on = false;  // it is of the block of the bend before it

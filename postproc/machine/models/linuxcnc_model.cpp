@@ -126,29 +126,31 @@ CubicBezier joined(const CubicBezier& first, const CubicBezier& last) {
 std::vector<JoinedPiece> curves_as_arcs(std::span<const TimedPiece> pieces) {
   std::vector<JoinedPiece> arcs;
   arcs.reserve(pieces.size());
-  double open = 0;  // arcs that the pieces so far are of the last one
+  double open = 0;  // of one arc, what the pieces so far are of the last one; 0: it is whole
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     const TimedPiece& timed = pieces[i];
     const auto index = static_cast<std::uint32_t>(i);
     const auto* cubic = std::get_if<CubicBezier>(&timed.piece);
     if (cubic == nullptr) {
       arcs.push_back({timed, index, index});
+      open = 0;
       continue;
     }
     const double wanted = timed.arcs > 0 ? timed.arcs : kArcsPerBezier;
-    if (wanted < 1 && timed.goes_on && open + wanted / 2 < 1) {
+    if (wanted < 1 && timed.goes_on && open > 0 && open + wanted / 2 < 1) {
       arcs.back().piece = joined(std::get<CubicBezier>(arcs.back().piece), *cubic);
       arcs.back().last_piece = index;
       open += wanted;
       continue;
     }
-    open = wanted < 1 ? wanted : 0;
+    const std::size_t before = arcs.size();
     const double count = std::max(1.0, std::round(wanted));
     for (double k = 0; k < count; ++k) {
       JoinedPiece part{timed, index, index};
       part.piece = geometry::sub_piece(*cubic, k / count, (k + 1) / count);
       if (geometry::length_of(part.piece) > 0) arcs.push_back(std::move(part));
     }
+    open = wanted < 1 && arcs.size() > before ? wanted : 0;
   }
   return arcs;
 }

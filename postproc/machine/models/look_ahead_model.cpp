@@ -135,7 +135,7 @@ StretchChain look_ahead_stretches(std::span<const TimedPiece> pieces, const Mach
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     const PathPiece& piece = pieces[i].piece;
     const Vector3 axis_velocity = axis_velocities(machine, pieces[i].rapid);
-    if (!pieces[i].goes_on) block_length = length_of_block(pieces.subspan(i));
+    if (i == 0 || !pieces[i].goes_on) block_length = length_of_block(pieces.subspan(i));
     const double velocity =
         std::min({pieces[i].feed / 60, machine.path_feed, block_length / machine.block_period});
     const auto add = [&](const PathPiece& part, VelocityStretch s) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <random>
 
@@ -81,6 +82,15 @@ TEST(CubicPieces, AreFew) {
   EXPECT_LE(cubic_pieces(quarter_circle(10), 1e-6)->size(), 64U);
 }
 
+// A quarter of a circle of 2 m within 1e-6 mm is the most that a curve of a program needs;
+// what needs more has weights that are odd.
+TEST(CubicPieces, AreNoMoreThanAPieceIsWorth) {
+  EXPECT_TRUE(cubic_pieces(quarter_circle(2000), 1e-6));
+  RationalBezier odd = quarter_circle(1000);
+  odd.control[1] = weighted(place_of(odd.control[1]), 1e7);
+  EXPECT_FALSE(cubic_pieces(odd, 1e-6));
+}
+
 TEST(CubicPieces, ChainFromItsStartToItsEnd) {
   for (int degree = 1; degree <= 5; ++degree) {
     const RationalBezier piece = random_piece(degree, 7U + static_cast<unsigned>(degree));
@@ -138,6 +148,35 @@ TEST(RationalPieces, AreThoseOfTheCurveWhereAllWeightsAreOne) {
       EXPECT_LT((place_of(pieces[i].control[static_cast<std::size_t>(j)]) - expected[i].control[j])
                     .norm(),
                 1e-13);
+    }
+  }
+}
+
+// The sum of w N P over the sum of w N.
+TEST(RationalPieces, AreThoseOfRandomCurvesWithWeights) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> step(0.2, 2);
+  for (int degree = 1; degree <= kMaxDegree; ++degree) {
+    std::vector<double> breakpoints = {0};
+    for (int i = 0; i < 5; ++i) breakpoints.push_back(breakpoints.back() + step(random));
+    const BsplineBasis basis = BsplineBasis::clamped(degree, breakpoints);
+    std::vector<WeightedPoint> points;
+    for (std::size_t i = 0; i < basis.size(); ++i) {
+      points.push_back(weighted({step(random), step(random), step(random)}, step(random)));
+    }
+    const std::vector<RationalBezier> pieces = rational_pieces(basis, points);
+    ASSERT_EQ(pieces.size(), breakpoints.size() - 1);
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+      for (const double t : {0.0, 0.3, 0.7, 0.99}) {
+        const double u = breakpoints[i] + t * (breakpoints[i + 1] - breakpoints[i]);
+        const std::size_t span = basis.find_span(u);
+        std::array<double, kMaxDegree + 1> values{};
+        basis.evaluate(span, u, values.data());
+        WeightedPoint sum = WeightedPoint::Zero();
+        const auto p = static_cast<std::size_t>(degree);
+        for (std::size_t j = 0; j <= p; ++j) sum += values[j] * points[span - p + j];
+        EXPECT_LT((point_at(pieces[i], t) - place_of(sum)).norm(), 1e-12) << degree << ' ' << u;
+      }
     }
   }
 }

@@ -35,5 +35,13 @@ TEST(TargetOnMachine, IsTheTargetItselfWhereTheMachineSaysNothingElse) {
   }
 }
 
+TEST(OnlyControlOf, IsTheOneWhoseMachinesAreOfThisModel) {
+  EXPECT_EQ(only_control_of(ControllerModel::kLinuxcnc), gcode::find_control("linuxcnc"));
+  EXPECT_EQ(only_control_of(ControllerModel::kGrblhal), gcode::find_control("grblhal"));
+  EXPECT_EQ(only_control_of(ControllerModel::kKlipper), gcode::find_control("klipper"));
+  EXPECT_EQ(only_control_of(find_machine("router")->model), nullptr);
+  EXPECT_EQ(only_control_of(find_machine("mill")->model), nullptr);
+}
+
 }  // namespace
 }  // namespace batten::postproc

@@ -58,9 +58,9 @@ Run random_run(unsigned seed) {
     if (kind < 0.3) {
       run.points.push_back(run.points.back() + Point3(unit(random), 1, -unit(random)));
     } else if (kind < 0.6) {
-      append_bend(random_cubic(run.points.back(), random), true, 4e-4, run);
+      append_bend({.piece = random_cubic(run.points.back(), random)}, 1, 4e-4, run);
     } else {
-      append_bend(random_arc(run.points.back(), random), true, 4e-4, run);
+      append_bend({.piece = random_arc(run.points.back(), random)}, 1, 4e-4, run);
     }
   }
   run.feeds = {{0, 100}};
@@ -68,6 +68,27 @@ Run random_run(unsigned seed) {
 }
 
 constexpr unsigned kRuns = 200;
+
+// A curve with weights is many pieces for one block, and short ones.
+TEST(AppendBend, PutsAtLeastFourChordsOnABlockNotOnEachOfItsPieces) {
+  std::mt19937 random(3);
+  postproc::Run run;
+  run.points.push_back(Point3::Zero());
+  const geometry::CubicBezier cubic = random_cubic(run.points.back(), random);
+  append_bend({.piece = cubic}, 1, 1e3, run);
+  EXPECT_EQ(run.points.size(), 5U);
+  for (const std::size_t pieces : {2, 64}) {
+    run.points = {cubic.control[0]};
+    run.bends.clear();
+    for (std::size_t i = 0; i < pieces; ++i) {
+      const auto n = static_cast<double>(pieces);
+      const auto k = static_cast<double>(i);
+      append_bend({.piece = geometry::sub_piece(cubic, k / n, (k + 1) / n)}, pieces, 1e3, run);
+    }
+    EXPECT_EQ(run.points.size(), std::max<std::size_t>(pieces, 4) + 1);
+    EXPECT_EQ(run.bends.back().last, run.points.size() - 1);
+  }
+}
 
 TEST(AppendBend, PutsVerticesOnTheBendSoThatChordsMissItByLittle) {
   for (unsigned seed = 0; seed < kRuns; ++seed) {
@@ -165,9 +186,9 @@ TEST(ArcScatter, IsHowFarArcsAreFromAClothoid) {
     }
     const Point3 end(arc.end.x(), arc.end.y(), 0);
     const double sweep = 2 * std::asin(0.5 * (arc.end - arc.start).norm() / radius);
-    append_bend(geometry::Arc{run.points.back(), end, Point3(arc.center.x(), arc.center.y(), 0),
-                              Vector3::UnitZ(), arc.clockwise ? -sweep : sweep},
-                true, 1e-4, run);
+    const geometry::Arc piece{run.points.back(), end, Point3(arc.center.x(), arc.center.y(), 0),
+                              Vector3::UnitZ(), arc.clockwise ? -sweep : sweep};
+    append_bend({.piece = piece}, 1, 1e-4, run);
   }
   const double truth = std::sqrt(squares / (kArcs * kEach));
   EXPECT_NEAR(arc_scatter(run), truth, 0.1 * truth);

@@ -124,6 +124,15 @@ TEST_P(EveryModel, SlowsDownForShortBlocks) {
   EXPECT_LE(time, 1000 * 0.004 * 1.02 + 0.1) << "LinuxCNC keeps 2 % of reserve";
 }
 
+// Leads of cut runs begin in the midst of a block.
+TEST_P(EveryModel, TakesAPieceThatGoesOnWithoutItsBlockForABlock) {
+  const Machine m = machine_of(GetParam());
+  TimedPiece piece = line({0, 0, 0}, {30, 0, 0});
+  const double time = time_of({piece}, m);
+  piece.goes_on = true;
+  EXPECT_EQ(time_of({piece}, m), time);
+}
+
 // With N blocks of .2 mm ahead the speed is at most sqrt(2 a N .2): 77.5 mm/s at N = 15.
 TEST_P(EveryModel, BrakesForTheEndOfTheLookAhead) {
   Machine m = machine_of(GetParam());

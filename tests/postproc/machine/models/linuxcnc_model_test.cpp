@@ -257,6 +257,24 @@ TEST(LinuxcncTime, RunsACurveAsTheArcsThatItsPiecesAre) {
   EXPECT_NEAR(cutting_time(pieces, machine, kG64), cutting_time({{whole}}, machine, kG64), 1e-3);
 }
 
+// Leads of cut runs and parts of long chains begin in the midst of a block.
+TEST(LinuxcncTime, RunsCurvesFromTheMidstOfABlock) {
+  Chain pieces;
+  for (int i = 0; i < 12; ++i) {
+    TimedPiece& piece = pieces.emplace_back(TimedPiece{
+        geometry::sub_piece(quarter_of_a_circle(), (50 + i) / 64.0, (51 + i) / 64.0), 6000});
+    piece.goes_on = true;
+    piece.arcs = 0.25;
+  }
+  const auto stretches =
+      stretches_of(pieces, bench_machine(0), kG64, ChainEnd::kStop, WithPositions::kYes);
+  EXPECT_EQ(std::ranges::count(stretches.places, false, &StretchPlace::is_corner), 3);
+  pieces[4].piece =
+      geometry::Line{geometry::start_point(pieces[4].piece), geometry::end_point(pieces[4].piece)};
+  const double length = 20 * std::numbers::pi / 2 * 12 / 64;
+  EXPECT_GT(cutting_time(pieces, bench_machine(0), kG64), length / 100);
+}
+
 // Measured: curves in XY at 50 mm/s where Z moves at 40 mm/s at most.
 TEST(LinuxcncTime, RunsACurveInXyWhateverZAllows) {
   Machine machine = bench_machine(0);
