@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -123,13 +125,34 @@ class TubeCandidates {
     add_weighted(TubeMethod::kQuick, solver_.original(), kTubeTuning.quick_power);
   }
 
-  void add_few() {
-    add(TubeMethod::kOriginal, solver_.original());
-    add(TubeMethod::kBending, solver_.least(2, {}));
-    const BsplineCurve third = solver_.least(3, {});
-    add(TubeMethod::kThirdDerivative, third);
-    add(TubeMethod::kCurvature, weighted(third, 0));
-    add(TubeMethod::kQuick, weighted(third, kTubeTuning.quick_power));
+  void add_few(std::span<const TubeMethod> methods) {
+    std::optional<BsplineCurve> third;
+    const auto least_third = [&]() -> const BsplineCurve& {
+      if (!third) third = solver_.least(3, {});
+      return *third;
+    };
+    for (const TubeMethod method : methods) {
+      switch (method) {
+        case TubeMethod::kOriginal:
+          add(method, solver_.original());
+          break;
+        case TubeMethod::kBending:
+          add(method, solver_.least(2, {}));
+          break;
+        case TubeMethod::kThirdDerivative:
+          add(method, least_third());
+          break;
+        case TubeMethod::kCurvature:
+          add(method, weighted(least_third(), 0));
+          break;
+        case TubeMethod::kQuick:
+          add(method, weighted(least_third(), kTubeTuning.quick_power));
+          break;
+        default:
+          throw std::invalid_argument("few_in_tube: method " + std::string(name_of(method)) +
+                                      ", expected one of kFewMethods");
+      }
+    }
   }
 
   [[nodiscard]] std::size_t visits() const { return solver_.visits(); }
@@ -270,10 +293,11 @@ std::vector<TubeCandidate> smooth_in_tube(const BsplineCurve& curve, const TubeO
   return all;
 }
 
-FewInTube few_in_tube(const BsplineCurve& curve, const TubeOptions& options) {
+FewInTube few_in_tube(const BsplineCurve& curve, const TubeOptions& options,
+                      std::span<const TubeMethod> methods) {
   check(curve, options);
   TubeCandidates made(curve, options, 0);
-  made.add_few();
+  made.add_few(methods);
   return {std::move(made.found), made.visits()};
 }
 

@@ -6,8 +6,10 @@
 // at the same parameter. Among the candidates is the old curve.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <functional>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -92,19 +94,26 @@ struct TubeCandidate {
 [[nodiscard]] std::vector<TubeCandidate> smooth_in_tube(const BsplineCurve& curve,
                                                         const TubeOptions& options);
 
+// The candidates that win most for their cost: the old curve, the least integrals of |C''|^2 and of
+// |C'''|^2, and after the latter one round of curvature and one of estimated time.
+inline constexpr std::array kFewMethods = {TubeMethod::kOriginal, TubeMethod::kBending,
+                                           TubeMethod::kThirdDerivative, TubeMethod::kCurvature,
+                                           TubeMethod::kQuick};
+
 struct FewInTube {
-  std::vector<TubeCandidate> candidates;  // five, the old curve first; the same methods every time
+  std::vector<TubeCandidate> candidates;  // one for each method, in their order
   // Of all solutions, Newton steps times the samples that each step visits.
   std::size_t visits = 0;
 };
 
-// The candidates that win most for their cost, on the knots of the curve: the least integrals of
-// |C''|^2 and of |C'''|^2, and after the latter one round of curvature and one of estimated time.
-// Four solutions of solve_band, each of kTubeTuning.watched samples for a span and of at most
-// kBandTuning.max_steps steps. `options.halvings` is not looked at.
+// Candidates of `methods`, which are some of kFewMethods, on the knots of the curve; the same of a
+// method whichever others are asked for. Each but the old curve costs a solution of solve_band, and
+// those after the least integral of |C'''|^2 that one, too, once: of kTubeTuning.watched samples
+// for a span and of at most kBandTuning.max_steps steps. `options.halvings` is not looked at.
 //
-// Throws as smooth_in_tube does.
-[[nodiscard]] FewInTube few_in_tube(const BsplineCurve& curve, const TubeOptions& options);
+// Throws as smooth_in_tube does, and for another method.
+[[nodiscard]] FewInTube few_in_tube(const BsplineCurve& curve, const TubeOptions& options,
+                                    std::span<const TubeMethod> methods = kFewMethods);
 
 // Seconds that the machine takes for a curve.
 using CurveTimer = std::function<double(const BsplineCurve&)>;

@@ -19,8 +19,9 @@ using geometry::Vector3;
 // The first interval from rest has constant jerk, so it must be short: a third of the first jerk
 // phase by time is a 27th by way; at the end of that phase, at half the speed, the potential is
 // 0.35 of its greatest.
-constexpr GridRule kPlanGrid = {
-    .density = kPlanDensity, .nodes_per_bend = 2, .rest_share = 0.35 / 27};
+constexpr GridRule grid_of(double density) {
+  return {.density = density, .nodes_per_bend = 2, .rest_share = 0.35 / 27};
+}
 
 // A straight move is not refined, so it has more nodes from the start.
 constexpr double kStraightDensity = 2;
@@ -131,9 +132,7 @@ class BentSection {
   BentSection(std::span<const PathPiece> path, const PlannedSection& section, LimitsOfPieces limits,
               double density)
       : path_(path), section_(section), limits_(limits) {
-    GridRule rule = kPlanGrid;
-    rule.density = density;
-    intervals = intervals_of(section, path, limits, rule);
+    intervals = intervals_of(section, path, limits, grid_of(density));
     if (section.start.is_rest()) {
       first = intervals.front();
       start = rest_motion(path[first.piece], first, limits_of(limits, first.piece));
@@ -433,6 +432,22 @@ FeedPlan plan_feed(std::span<const PathPiece> path, const KinematicPathLimits& l
 FeedPlan plan_feed(std::span<const PathPiece> path, LimitsOfPieces limits, const PlanEnds& ends,
                    double density) {
   return Planner(path, limits, density).run(ends);
+}
+
+std::vector<double> plan_nodes(std::span<const PathPiece> path, const KinematicPathLimits& limits,
+                               double density) {
+  std::vector<double> nodes(path.size(), 0);
+  const LimitsOfPieces same(&limits, 1);
+  for_each_section(path, same, {}, [&](const PlannedSection& section) {
+    if (section.is_straight()) {
+      ++nodes[section.parts.front().piece];
+      return;
+    }
+    for (const FeedInterval& at : intervals_of(section, path, same, grid_of(density))) {
+      ++nodes[at.piece];
+    }
+  });
+  return nodes;
 }
 
 }  // namespace batten::postproc

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -16,49 +15,16 @@
 #include "geometry/fitting/corners/ozcan_corner.h"
 #include "geometry/fitting/corners/time_optimal_corner.h"
 #include "geometry/fitting/fair/fair_measure.h"
-#include "geometry/fitting/naseath/naseath.h"
-#include "geometry/fitting/one_sided/one_sided_fair.h"
-#include "geometry/fitting/tube/tube_smoothing.h"
 #include "geometry/path/curve_pieces.h"
 #include "geometry/path/joined_curve.h"
 #include "postproc/machine/planner/feed_plan.h"
+#include "postproc/smooth/methods/tube_curve.h"
 
 namespace batten::postproc {
 
 using geometry::Point3;
 using geometry::SmoothCurve;
 using geometry::Vector3;
-
-double greatest_feed(const Run& run) {
-  double feed = 0;
-  for (const FeedFrom& from : run.feeds) feed = std::max(feed, from.feed);
-  return feed;
-}
-
-geometry::KinematicLimits limits_of(const Machine& machine, double feed) {
-  geometry::KinematicLimits limits;
-  limits.feed = std::min(feed / 60, machine.max_velocity());
-  limits.speed.setConstant(machine.max_velocity());
-  limits.acceleration.setConstant(machine.max_acceleration());
-  limits.jerk.setConstant(std::numeric_limits<double>::infinity());
-  return limits;
-}
-
-std::optional<SmoothCurve> fair_curve(std::span<const Point3> run, const CurveRequest& request) {
-  geometry::FairOptions options;
-  options.tolerance = request.tolerance;
-  options.rounding = request.rounding;
-  options.keep_corner_angle = request.keep_corner_angle;
-  options.keep_found_corner = request.keep_found_corner;
-  options.feed = std::max(1.0, 60 * request.limits.feed);
-  options.acceleration = request.limits.acceleration.minCoeff();
-  options.jerk = request.jerk;
-  options.scatter = request.scatter;
-  options.accurate = request.accurate;
-  options.near = request.near;
-  if (request.side == geometry::Side::kBoth) return geometry::fair_path(run, options);
-  return geometry::one_sided_fair_path(run, {options, request.side, request.side_margin});
-}
 
 namespace {
 
@@ -103,12 +69,6 @@ std::optional<SmoothCurve> as_one_curve(std::span<const Point3> run, const Path&
     }
   }
   return result;
-}
-
-// What time_optimal_corner needs to know.
-bool can_race(const geometry::KinematicLimits& limits) {
-  const auto given = limits.acceleration.array().isFinite() || limits.jerk.array().isFinite();
-  return given.all() && std::isfinite(limits.feed) && limits.feed > 0;
 }
 
 template <typename Options>
@@ -211,179 +171,6 @@ void round_seam(SmoothCurve& path, const CurveRequest& request) {
   }
 }
 
-// --- a tube about a spline, for a run of lines: Naseath's, and the least energies in it
-// --------------------------------------------
-
-struct TubeTuning {
-  // Of the tolerance, for the fit: enough to follow the vertices' rounding and to round corners a
-  // little, since the method itself refuses corners; the tube gets the rest.
-  double fit_part = 0.25;
-  int passes = 300;  // repaired, the method ends by itself after 10 to 120; literally it need not
-  // Control points that stay at both ends of a part: its ends, or tangents and curvatures, too.
-  int hold_position = 1;
-  int hold_curvature = 3;
-  // Nodes of the plans that times are compared by: a third of what is usual, good to a permille.
-  double density = 2;
-};
-constexpr TubeTuning kTube;
-
-// A part of the fit between two cuts.
-struct TubeSection {
-  double from;
-  double to;
-  bool straight;        // a line of the program: it stays
-  bool meets_smoothly;  // its neighbours go on with its tangent and curvature
-};
-
-// Inner knots at which the curve may have a corner.
-std::vector<double> corners_of(const BsplineCurve& curve) {
-  std::vector<double> corners;
-  const auto& t = curve.basis().knots();
-  for (std::size_t i = 4; i + 5 < t.size(); ++i) {
-    if (t[i] == t[i + 1] && t[i] > curve.first() && t[i] < curve.last()) corners.push_back(t[i]);
-  }
-  corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
-  return corners;
-}
-
-std::vector<TubeSection> sections_of(const BsplineCurve& curve, bool closed) {
-  const auto lines = geometry::CurvePieces(curve, curve.first(), curve.last()).straight_runs();
-  const std::vector<double> corners = corners_of(curve);
-  std::vector<double> cuts = {curve.first(), curve.last()};
-  cuts.insert(cuts.end(), corners.begin(), corners.end());
-  for (const geometry::StraightRun& line : lines) {
-    cuts.push_back(line.from);
-    cuts.push_back(line.to);
-  }
-  std::sort(cuts.begin(), cuts.end());
-  cuts.erase(std::unique(cuts.begin(), cuts.end()), cuts.end());
-  const auto is_smooth = [&](double u) {
-    if (u == curve.first() || u == curve.last()) return closed;
-    return !std::binary_search(corners.begin(), corners.end(), u);
-  };
-  std::vector<TubeSection> sections;
-  std::size_t line = 0;
-  for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
-    while (line < lines.size() && lines[line].to <= cuts[i]) ++line;
-    const bool straight = line < lines.size() && lines[line].from <= cuts[i];
-    sections.push_back(
-        {cuts[i], cuts[i + 1], straight, is_smooth(cuts[i]) || is_smooth(cuts[i + 1])});
-  }
-  return sections;
-}
-
-// What the measured deviation of a spline fitted to the run leaves is the radius of the tube. Lines
-// and kept corners of the fit stay; the parts between them are smoothed, each with the tangent and
-// curvature that it has where it meets a line.
-struct TubeFit {
-  SmoothCurve path;
-  double radius = 0;  // mm
-  std::vector<TubeSection> sections;
-
-  [[nodiscard]] BsplineCurve part(const TubeSection& section) const {
-    return path.curve.part(section.from, section.to);
-  }
-  [[nodiscard]] static int held_points(const TubeSection& section) {
-    return section.meets_smoothly ? kTube.hold_curvature : kTube.hold_position;
-  }
-  // `moved`: mm, the greatest displacement of the parts.
-  [[nodiscard]] SmoothCurve with(const std::vector<BsplineCurve>& parts, double moved) const {
-    SmoothCurve smoothed = path;
-    smoothed.curve = geometry::joined(parts);
-    smoothed.deviation += moved;
-    smoothed.noise = 0;
-    smoothed.rounds = 0;
-    smoothed.edge_deviations.clear();
-    return smoothed;
-  }
-};
-
-std::optional<TubeFit> tube_fit(std::span<const Point3> run, const CurveRequest& request) {
-  CurveRequest fit = request;
-  fit.tolerance = kTube.fit_part * request.tolerance;
-  fit.scatter = 0;
-  fit.accurate = true;
-  std::optional<SmoothCurve> path = fair_curve(run, fit);
-  if (!path || !(path->deviation < request.tolerance)) return std::nullopt;
-  const bool closed = (run.front() - run.back()).norm() <= geometry::kSamePlace;
-  TubeFit tube{std::move(*path), 0, {}};
-  tube.radius = request.tolerance - tube.path.deviation;
-  tube.sections = sections_of(tube.path.curve, closed);
-  return tube;
-}
-
-std::optional<SmoothCurve> naseath_curve(std::span<const Point3> run, const CurveRequest& request,
-                                         bool literal) {
-  const auto tube = tube_fit(run, request);
-  if (!tube) return std::nullopt;
-  geometry::NaseathOptions options;
-  options.radius = tube->radius;
-  options.max_passes = kTube.passes;
-  if (literal) options.repairs = geometry::NaseathRepairs::none();
-  double moved = 0;
-  std::vector<BsplineCurve> parts;
-  for (const TubeSection& section : tube->sections) {
-    parts.push_back(tube->part(section));
-    if (section.straight) continue;
-    options.held_points = TubeFit::held_points(section);
-    geometry::NaseathResult smoothed = geometry::smooth_naseath(parts.back(), options);
-    moved = std::max(moved, smoothed.displacement);
-    parts.back() = std::move(smoothed.curve);
-  }
-  return tube->with(parts, moved);
-}
-
-// s, from rest to rest.
-double planned_time(const geometry::Path& path, const CurveRequest& request) {
-  KinematicPathLimits limits(request.limits);
-  limits.jerk = limits.jerk.cwiseMin(request.jerk);
-  return plan_feed(path, limits, {}, kTube.density).time;
-}
-
-// All parts of the fit are smoothed in the same way: the one that takes the least time for the
-// whole.
-std::optional<SmoothCurve> tube_curve(std::span<const Point3> run, const CurveRequest& request) {
-  if (!can_race(request.limits)) return std::nullopt;
-  const auto tube = tube_fit(run, request);
-  if (!tube) return std::nullopt;
-  geometry::TubeOptions options;
-  options.radius = tube->radius;
-  options.feed = request.limits.feed;
-  options.acceleration = request.limits.acceleration.minCoeff();
-  struct Way {
-    std::vector<BsplineCurve> parts;
-    double moved = 0;  // mm
-  };
-  std::vector<Way> ways;
-  std::vector<BsplineCurve> straight_before;  // the first part that bends
-  for (const TubeSection& section : tube->sections) {
-    const BsplineCurve part = tube->part(section);
-    if (section.straight) {
-      if (ways.empty()) straight_before.push_back(part);
-      for (Way& way : ways) way.parts.push_back(part);
-      continue;
-    }
-    options.held_points = TubeFit::held_points(section);
-    const auto found = geometry::few_in_tube(part, options).candidates;
-    if (ways.empty()) ways.assign(found.size(), {straight_before, 0});
-    for (std::size_t k = 0; k < found.size(); ++k) {
-      ways[k].parts.push_back(found[k].curve);
-      ways[k].moved = std::max(ways[k].moved, found[k].displacement);
-    }
-  }
-  if (ways.empty()) return tube->path;
-  std::optional<SmoothCurve> best;
-  double least = std::numeric_limits<double>::infinity();
-  for (const Way& way : ways) {
-    SmoothCurve made = tube->with(way.parts, way.moved);
-    const double time = planned_time(geometry::beziers_of(made.curve), request);
-    if (!(time < least)) continue;
-    least = time;
-    best = std::move(made);
-  }
-  return best;
-}
-
 }  // namespace
 
 std::optional<RunCurve> curve_of(Method method, std::span<const Point3> run,
@@ -395,8 +182,11 @@ std::optional<RunCurve> curve_of(Method method, std::span<const Point3> run,
         return fair_curve(run, request);
       case Method::kTimeOptimal:
         return time_optimal_curve(run, request);
-      case Method::kTube:
-        return tube_curve(run, request);
+      case Method::kTube: {
+        auto tube = tube_curve(run, request);
+        if (!tube) return std::nullopt;
+        return std::move(tube->path);
+      }
       case Method::kNaseath:
         return naseath_curve(run, request, false);
       case Method::kNaseathLiteral:
@@ -429,7 +219,8 @@ double straight_time(const BsplineCurve& curve, const CurveRequest& request) {
   for (const geometry::PathPiece& piece : geometry::beziers_of(curve)) {
     length += geometry::length_of(piece);
   }
-  return planned_time({geometry::Line{Point3::Zero(), Point3(length, 0, 0)}}, request);
+  const geometry::Path line = {geometry::Line{Point3::Zero(), Point3(length, 0, 0)}};
+  return plan_feed(line, plan_limits(request)).time;
 }
 
 double greatest_curvature(std::span<const Point3> p) {

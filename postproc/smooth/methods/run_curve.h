@@ -1,19 +1,16 @@
 // What a method of smoothing makes of a run: one curve, whatever the method.
 #pragma once
 
-#include <limits>
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "geometry/basic/point.h"
-#include "geometry/basic/tolerance_kind.h"
 #include "geometry/fitting/fair/fair.h"
 #include "geometry/path/bspline_curve.h"
-#include "geometry/path/kinematic_feed.h"
-#include "postproc/machine/machine.h"
 #include "postproc/options/options.h"
-#include "postproc/runs/section.h"
+#include "postproc/smooth/methods/curve_request.h"
 
 namespace batten::postproc {
 
@@ -22,28 +19,6 @@ struct RunCurve {
   geometry::SmoothCurve path;  // `noise` and `rounds` are known to `fair` alone, 0 with the others
   std::size_t number = 0;      // among those of a RunMemo
 };
-
-struct CurveRequest {
-  double tolerance = 0.01;  // mm, curve to run
-  geometry::ToleranceKind kind = geometry::ToleranceKind::kPath;
-  geometry::Side side = geometry::Side::kBoth;
-  double side_margin = 0;            // mm, see geometry::OneSidedOptions
-  double rounding = 0.0005;          // mm, greatest error of one printed coordinate of the run
-  double keep_corner_angle = 3.2;    // radians: vertices that turn more stay as they are
-  double keep_found_corner = 3.2;    // radians: see geometry::FairOptions
-  geometry::KinematicLimits limits;  // what the machine can do at the greatest feed of the run
-  double jerk = std::numeric_limits<double>::infinity();  // mm/s^3, see geometry::FairOptions
-  double scatter = 0;                                     // mm, see geometry::FairOptions
-  bool accurate = false;                                  // see geometry::FairOptions
-  bool near = true;                                       // the same
-  double guo_lambda = 0;                                  // see geometry::GuoOptions
-  geometry::Seam seam = geometry::Seam::kCorner;          // of a closed run
-};
-
-[[nodiscard]] double greatest_feed(const Run& run);  // mm/min
-
-// `feed`: mm/min, programmed. Where the machine has no jerk limit, it is infinite.
-[[nodiscard]] geometry::KinematicLimits limits_of(const Machine& machine, double feed);
 
 // The ends of the run are met exactly. A closed run starts and ends in its seam vertex, where the
 // tool is put down and taken up: there is no corner there where the path has none or, with
@@ -56,9 +31,6 @@ struct CurveRequest {
 // for Method::kBest and Method::kNone, which are no methods of their own.
 [[nodiscard]] std::optional<RunCurve> curve_of(Method method, std::span<const geometry::Point3> run,
                                                const CurveRequest& request);
-
-[[nodiscard]] std::optional<geometry::SmoothCurve> fair_curve(std::span<const geometry::Point3> run,
-                                                              const CurveRequest& request);
 
 // s: from rest to rest along a straight line as long as the curve. No curve of that length takes
 // less on a machine with the feed, acceleration and jerk of the request.

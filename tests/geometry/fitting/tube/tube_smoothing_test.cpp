@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <span>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -68,6 +69,27 @@ TEST(FewInTube, StayInTheTubeForABoundedEffort) {
       EXPECT_LE(few.visits, 4 * 200 * (6 * spans + 1));
     }
   }
+}
+
+// A method that is asked for alone costs two solutions at most, and its curve is the same.
+TEST(FewInTube, OfOneMethodIsTheSameAsAmongAll) {
+  for (const unsigned seed : {1, 4, 6}) {
+    const BsplineCurve curve = random_curve(seed);
+    const FewInTube all = few_in_tube(curve, tube(radius_for(seed)));
+    const std::size_t spans = curve.breakpoints().size() - 1;
+    for (std::size_t i = 0; i < kFewMethods.size(); ++i) {
+      const FewInTube one =
+          few_in_tube(curve, tube(radius_for(seed)), std::span(&kFewMethods[i], 1));
+      ASSERT_EQ(one.candidates.size(), 1U);
+      EXPECT_EQ(one.candidates.front().method, all.candidates[i].method);
+      EXPECT_EQ(one.candidates.front().curve.control_points(),
+                all.candidates[i].curve.control_points());
+      EXPECT_LE(one.visits, 2 * 200 * (6 * spans + 1));
+    }
+  }
+  constexpr TubeMethod kOther = TubeMethod::kEven;
+  EXPECT_THROW((void)few_in_tube(random_curve(1), tube(.1), std::span(&kOther, 1)),
+               std::invalid_argument);
 }
 
 TEST(SmoothInTube, TheOldCurveComesFirstAndAllStayInTheTubeAtEveryParameter) {

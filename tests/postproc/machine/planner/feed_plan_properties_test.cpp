@@ -344,5 +344,22 @@ TEST(FeedPlanProperties, WithoutJerkLimitTheTimeIsThatOfReachabilityAnalysis) {
   }
 }
 
+// What is told before of the work: refinement at least keeps the nodes, and less than triples them.
+TEST(FeedPlanProperties, HasTheNodesThatItIsSaidToBeginWithAndSomeMore) {
+  for (int seed = 0; seed < 10; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    const Case test = random_case(seed);
+    for (const double density : {2.0, kPlanDensity}) {
+      const std::vector<double> nodes = plan_nodes(test.path, test.limits, density);
+      ASSERT_EQ(nodes.size(), test.path.size());
+      double sum = 0;
+      for (const double each : nodes) sum += each;
+      const FeedPlan plan = plan_feed(test.path, test.limits, {}, density);
+      EXPECT_LE(sum, static_cast<double>(plan.nodes.size()));
+      EXPECT_LE(static_cast<double>(plan.nodes.size()), 3 * sum);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace batten::postproc
