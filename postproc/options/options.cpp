@@ -195,6 +195,10 @@ std::span<const Choice<Side>> sides() { return kSides; }
 std::span<const Choice<Seam>> seams() { return kSeams; }
 std::span<const Choice<SourceKind>> sources() { return kSources; }
 
+bool may_round_seams(Method method) {
+  return method != Method::kGuoLiteral && method != Method::kNone;
+}
+
 bool is_of_corners(Method method) {
   return method == Method::kGuo || method == Method::kGuoLiteral || method == Method::kOzcan ||
          method == Method::kOzcanUsual || method == Method::kTimeOptimal;
@@ -355,6 +359,11 @@ std::vector<std::string> problems_of(const SmoothOptions& options) {
                     std::back_inserter(problems));
   if (options.seam == Seam::kSmooth && options.side != Side::kBoth) {
     problems.emplace_back("--seam: smooth goes to both sides of the path, expected --side both");
+  }
+  if (options.seam == Seam::kSmooth && !may_round_seams(options.method)) {
+    problems.push_back(
+        fmt::format("--seam: --method {} rounds no seam, expected corner or another method",
+                    name_of(options.method)));
   }
   std::ranges::move(problems_of_decimals(options.decimals, options.source, options.target),
                     std::back_inserter(problems));

@@ -69,6 +69,9 @@ struct Choice {
 // racing.
 [[nodiscard]] bool is_of_corners(Method method);
 
+// Whether it rounds the corner in which a closed run begins, where that is asked for.
+[[nodiscard]] bool may_round_seams(Method method);
+
 // Whether there may be arcs in runs of this form: the ends of arcs have decimals of their own.
 [[nodiscard]] bool may_have_arcs(Form form);
 

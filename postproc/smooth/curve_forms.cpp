@@ -152,6 +152,7 @@ class CurveForms {
     if (!candidate) return std::nullopt;
     candidate->method = name_of(curve_.method);
     candidate->max_curvature = bends_.greatest();
+    candidate->rounds_seam = curve_.path.rounds_seam && !offer.around_vertices;
     candidate->figures.distance =
         std::hypot(setting_.meant.distance_of(plan->moves, curve_.path), facts().scale.printed);
     if (task_.scope == CandidateScope::kToRepeat) candidate->plan = plan;

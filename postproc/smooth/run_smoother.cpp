@@ -331,6 +331,7 @@ std::optional<SmoothedRun> smooth_repeat(const Run& run, const RunContext& conte
     if (!here) return std::nullopt;
     here->method = there.method;
     here->max_curvature = there.max_curvature;
+    here->rounds_seam = there.rounds_seam;
     here->figures.distance = there.figures.distance;
     result.candidates.push_back(std::move(*here));
   }

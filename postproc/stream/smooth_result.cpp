@@ -57,6 +57,7 @@ class Reporter {
     const auto last = first + static_cast<std::ptrdiff_t>(cut.pieces);
     bool all_kept = true;
     RunReport r = report_of(work);
+    r.closed = cut.run.closed && &work == &*first;  // counts once
     // The times of the parts are those between their neighbours; they are shares of the run's.
     Times before;
     Times after;
@@ -113,6 +114,7 @@ class Reporter {
     r.points = motion_count(std::get<Run>(section.content)) + 1;
     r.blocks_in = work.context.blocks;
     r.blocks_out = chosen != nullptr ? chosen->text.blocks : work.context.blocks;
+    r.closed = std::get<Run>(section.content).closed;
     r.had_curves = facts.form == Form::kCurves;
     const Figures& before = facts.scale.original;
     const Figures& after = chosen != nullptr ? chosen->figures : before;
@@ -135,6 +137,7 @@ class Reporter {
     r.form = chosen->form;
     r.chords_for_steps = chosen->chords_for_steps;
     r.arcs_as_chords = chosen->arcs_as_chords;
+    r.rounds_seam = chosen->rounds_seam;
     r.computed_blocks = computed_blocks(section);
     r.proved = proved_;
     r.deviation_mm = deviation_within(section);
@@ -344,6 +347,35 @@ gcode::Diagnostics notes_on_runs(std::span<const RunReport> runs, const gcode::P
                   own.error > 0 ? "beside them" : "long"),
       [](const RunReport& run) { return run.arcs_as_chords; });
   return notes;
+}
+
+void SeamTally::add(std::span<const RunReport> runs, const gcode::Program& program) {
+  for (const RunReport& run : runs) {
+    if (!run.closed) continue;
+    ++closed_;
+    if (run.rounds_seam) ++rounded_;
+    if (first_closed_) continue;
+    first_closed_ = program.blocks[run.first_line - program.blocks.front().line].span;
+  }
+}
+
+SeamTally& SeamTally::operator+=(const SeamTally& next) {
+  closed_ += next.closed_;
+  rounded_ += next.rounded_;
+  if (!first_closed_) first_closed_ = next.first_closed_;
+  return *this;
+}
+
+gcode::Diagnostics SeamTally::diagnostics() const {
+  if (rounded_ > 0) return {};
+  const std::string found = closed_ == 0
+                                ? "no run ends where it begins"
+                                : fmt::format(
+                                      "found {} closed {}, the first here, expected one that is "
+                                      "rewritten and begins in a corner that may be rounded",
+                                      closed_, closed_ == 1 ? "run" : "runs");
+  return {{gcode::Severity::kNote, "seam-not-rounded", first_closed_.value_or(gcode::SourceSpan{}),
+           "--seam smooth changes nothing: " + found}};
 }
 
 }  // namespace batten::postproc

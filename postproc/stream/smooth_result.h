@@ -58,6 +58,8 @@ struct RunReport {
   bool proved = false;
   bool chords_for_steps = false;  // see OutputPlan
   bool arcs_as_chords = false;
+  bool closed = false;       // it ends where it begins; of a cut run its first part
+  bool rounds_seam = false;  // what stands there now rounds the corner in which it does
   double noise_mm = 0;
   double max_curvature_before = 0;  // 1/mm, circle through three neighbouring vertices
   double max_curvature_after = 0;
@@ -160,5 +162,23 @@ using Progress = std::function<bool(double)>;
 [[nodiscard]] gcode::Diagnostics notes_on_runs(std::span<const RunReport> runs,
                                                const gcode::Program& program,
                                                const gcode::Control& target);
+
+// What became of the closed runs of a program whose seams are to be rounded, added up window by
+// window.
+class SeamTally {
+ public:
+  // `program`: the part of it with these runs.
+  void add(std::span<const RunReport> runs, const gcode::Program& program);
+  SeamTally& operator+=(const SeamTally& next);
+
+  // The note `seam-not-rounded` where no seam is rounded, at the first closed run or else at the
+  // begin of the program.
+  [[nodiscard]] gcode::Diagnostics diagnostics() const;
+
+ private:
+  std::size_t closed_ = 0;
+  std::size_t rounded_ = 0;
+  std::optional<gcode::SourceSpan> first_closed_;
+};
 
 }  // namespace batten::postproc

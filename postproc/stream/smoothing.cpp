@@ -60,6 +60,7 @@ class CollectedResult {
     causes_.add(window.causes);
     if (window.scale && scale_) scale_->add(*window.scale);
     if (window.scale && !scale_) scale_ = window.scale;
+    if (window.seams) (seams_ ? *seams_ : seams_.emplace()) += *window.seams;
     for (gcode::Diagnostic& note : window.notes_on_runs) {
       const bool noted = std::ranges::count(notes_on_runs_, note.id, &gcode::Diagnostic::id) > 0;
       if (!noted) notes_on_runs_.push_back(std::move(note));
@@ -76,6 +77,7 @@ class CollectedResult {
   // After the last window.
   SmoothResult finish() {
     notes_.tell_rest(result.diagnostics);
+    if (seams_) std::ranges::move(seams_->diagnostics(), std::back_inserter(notes_on_runs_));
     std::ranges::move(notes_on_runs_, std::back_inserter(result.diagnostics));
     // Before the others: what is said of the whole program must not be lost among them.
     const gcode::Diagnostics of_scale = scale_ ? scale_->diagnostics() : gcode::Diagnostics();
@@ -90,6 +92,7 @@ class CollectedResult {
   BandNoteTally notes_;
   CauseTally causes_;
   std::optional<ToleranceScale> scale_;
+  std::optional<SeamTally> seams_;
   bool proved_ = true;
   gcode::Diagnostics notes_on_runs_;  // one of each id
 };

@@ -120,6 +120,9 @@ class WindowWork {
     }
     for (const CutRun& cut : runs.cut_runs) done.outlook += cut.outlook;
     if (!setting_.survey) done.sums = sums_of(runs.works, runs.cut_runs, setting_.options);
+    if (setting_.options.seam == geometry::Seam::kSmooth && !setting_.survey) {
+      done.seams.emplace().add(done.runs, part.program);
+    }
     done.notes_on_runs = notes_on_runs(done.runs, part.program, *setting_.options.target);
     std::ranges::move(note_misread_arcs(part.program, part.meaning, *setting_.options.target),
                       std::back_inserter(done.notes_on_runs));

@@ -94,6 +94,7 @@ struct WindowDone {
   std::vector<StatedFrom> stated;       // in this window
   CauseTally causes;                    // of what is kept
   std::optional<ToleranceScale> scale;  // where its runs were smoothed
+  std::optional<SeamTally> seams;       // where its runs' seams were to be rounded
   Outlook outlook;
   PartSums sums;
   std::vector<gcode::Diagnostics> notes;

@@ -27,6 +27,8 @@ struct SmoothCurve {
   int rounds = 0;  // how often the band was widened for the machine's need
   // The same of each edge, from each input point to the next; or none where it is not known.
   std::vector<double> edge_deviations = {};
+  // Whether it rounds the corner of the polyline in which both of them begin and end (Seam).
+  bool rounds_seam = false;
 };
 
 // `points`: the vertices of the run, two or more, neighbours may coincide. When the first and

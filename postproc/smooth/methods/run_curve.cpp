@@ -59,7 +59,10 @@ std::optional<SmoothCurve> as_one_curve(std::span<const Point3> run, const Path&
   SmoothCurve result{
       geometry::curve_of_pieces(path.pieces, path.stations), stations_of(run), 0, 0, 0, 0};
   result.vertex_parameters.back() = result.curve.last();
-  if (path.seam) result.deviation = geometry::deviation_of(path.seam->deviation, kind);
+  if (path.seam) {
+    result.deviation = geometry::deviation_of(path.seam->deviation, kind);
+    result.rounds_seam = true;
+  }
   for (const auto& corner : path.corners) {
     if (const auto* blend = std::get_if<Blend>(&corner.outcome)) {
       result.deviation =
@@ -165,6 +168,7 @@ void round_seam(SmoothCurve& path, const CurveRequest& request) {
   const double deviation = geometry::deviation_of(blend->deviation, seam->kind);
   path.curve = geometry::joined(parts);
   path.deviation = std::max(path.deviation, deviation);
+  path.rounds_seam = true;
   if (path.edge_deviations.empty()) return;
   for (double* edge : {&path.edge_deviations.front(), &path.edge_deviations.back()}) {
     *edge = std::max(*edge, deviation);

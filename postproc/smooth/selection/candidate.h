@@ -50,7 +50,8 @@ struct Candidate {
   double max_curvature = 0;       // 1/mm, greatest of the curve that it was made of
   bool chords_for_steps = false;  // see OutputPlan
   bool arcs_as_chords = false;
-  std::vector<TimedPiece> moves;  // of a piece of a run, and in a RunMemo; empty otherwise
+  bool rounds_seam = false;             // see geometry::SmoothCurve
+  std::vector<TimedPiece> moves;        // of a piece of a run, and in a RunMemo; empty otherwise
   std::optional<OutputPlan> plan = {};  // where it is asked for (CandidateScope)
 };
 

@@ -84,6 +84,18 @@ TEST(Options, ThatAreWrongAreNamedWithWhatWasFound) {
          o.side = geometry::Side::kLeft;
        },
        "--seam"},
+      {"SmoothSeamByAMethodThatLeavesIt",
+       [](SmoothOptions& o) {
+         o.seam = geometry::Seam::kSmooth;
+         o.method = Method::kGuoLiteral;
+       },
+       "--seam: --method guo-literal"},
+      {"SmoothSeamOfNothing",
+       [](SmoothOptions& o) {
+         o.seam = geometry::Seam::kSmooth;
+         o.method = Method::kNone;
+       },
+       "--seam: --method none"},
       {"RuleThatIsNeverLifted", [](SmoothOptions& o) { o.allowed = {"cutter-compensation"}; },
        "cannot be lifted"},
       {"TooManyThreads", [](SmoothOptions& o) { o.threads = 100000; }, "--threads"}};

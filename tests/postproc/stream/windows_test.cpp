@@ -106,6 +106,25 @@ TEST(Windows, KeepAProgramThatWasSmoothedWhereverThatStands) {
   expect_same(windows, as_a_whole(text, options_for("linuxcnc")));
 }
 
+// Closed runs in two windows, none of which gains by a form of its own.
+TEST(Windows, NoteOnceThatNoSeamIsRounded) {
+  const std::string ring = "G1 X20 F300\nX10 Y17\nX0 Y0\n";
+  const std::string rings = "G1 X0 Y0\nG0 Z5\nG0 X0 Y0\nG1 Z-1 F300\n" + ring +
+                            "G0 Z6\nG0 X0 Y0\nG1 Z-2 F300\n" + ring + "G0 Z6\nM30\n";
+  SmoothOptions options = options_for("linuxcnc");
+  options.method = Method::kGuo;
+  options.seam = geometry::Seam::kSmooth;
+  const std::string text = passes_of_windows(kHead, rings);
+  const InWindows windows = in_windows(text, options, 1);
+  EXPECT_GE(windows.parts, 5U);
+  expect_same(windows, as_a_whole(text, options));
+  const auto note =
+      std::ranges::find(windows.result.diagnostics, "seam-not-rounded", &gcode::Diagnostic::id);
+  ASSERT_NE(note, windows.result.diagnostics.end());
+  EXPECT_NE(note->message.find("2 closed runs"), std::string::npos) << note->message;
+  EXPECT_EQ(note->where.begin, text.find(ring));
+}
+
 struct WholeCase {
   std::string name;
   std::string before;

@@ -147,6 +147,33 @@ TEST(SmoothSeam, IsWrittenWithoutACornerWhereAClosedProgramBegins) {
   expect_rest_copied(before, result);
 }
 
+bool notes_no_seam(const SmoothResult& result) {
+  return std::ranges::count(result.diagnostics, "seam-not-rounded", &gcode::Diagnostic::id) == 1;
+}
+
+// The tip turns by 144 degrees; as lines it is rounded where each turns by less than half of that.
+TEST(SmoothSeam, IsNotedWhereNoWrittenRunHasOne) {
+  const std::vector<geometry::Point3> half = [] {
+    std::vector<geometry::Point3> points = geometry::star_path();
+    points.resize(points.size() / 2);
+    return points;
+  }();
+  for (const auto& choice : methods()) {
+    if (!may_round_seams(choice.value)) continue;
+    for (const std::string& before :
+         {star_from_a_tip(), program_through(half, 3000), noisy_program()}) {
+      SCOPED_TRACE(choice.name);
+      SmoothOptions options = options_with(choice.value, "grbl");
+      EXPECT_FALSE(notes_no_seam(smoothed(before, options)));
+      options.seam = geometry::Seam::kSmooth;
+      const SmoothResult result = smoothed(before, options);
+      const bool rounded =
+          before == star_from_a_tip() && turn_at_seam(result.text) < 72 * geometry::kPi / 180;
+      EXPECT_EQ(notes_no_seam(result), !rounded);
+    }
+  }
+}
+
 // --- which one wins -----------------------------------------------------------------------------
 
 double time_of_star(Method method, Form output) {
