@@ -704,7 +704,7 @@ TEST(CurveReading, InAFrameRefusesWhatIsOutsideOfOne) {
 }
 
 TEST(CurveReading, OfPolyRefusesWhatItDoesNotUnderstand) {
-  constexpr const char* kNegative = "a denominator that is not positive everywhere";
+  constexpr const char* kNegative = "a denominator that changes too much or is not positive";
   std::vector<Refused> rows = {{"G1 X1\nPO[X]=(2,1)\n", "no POLY"},
                                {"POLY PO[X]=(2,1) PL=0.00001\n", "PL out of range"},
                                {"POLY PO[X]=(2,1) PO[]=(1,8)\n", kNegative},
