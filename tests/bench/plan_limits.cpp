@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "postproc/machine/models/junction_speed.h"
-#include "postproc/machine/program_time/planned_chain.h"
+#include "postproc/machine/models/planned_chain.h"
 #include "postproc/machine/program_time/program_time_chains.h"
 #include "tests/support/interpreted.h"
 #include "tests/support/planned_paths.h"

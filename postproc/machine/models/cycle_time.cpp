@@ -11,6 +11,7 @@
 #include "postproc/machine/machine_fields.h"
 #include "postproc/machine/models/jerk_motion.h"
 #include "postproc/machine/models/junction_speed.h"
+#include "postproc/machine/models/planned_chain.h"
 
 namespace batten::postproc {
 namespace {
@@ -59,12 +60,6 @@ void limit_by_stream(std::span<TimedPiece> pieces, const Machine& machine) {
 
 }  // namespace
 
-// LinuxCNC goes on under G61 where the path does; to grbl and Klipper it says what they do anyhow.
-bool stops_at_block_ends(const Machine& machine, gcode::PathMode path) {
-  return path == gcode::PathMode::kExactStop ||
-         (path == gcode::PathMode::kExactPath && machine.model == ControllerModel::kLookAhead);
-}
-
 std::vector<TimedPiece> with_length_and_feed(std::span<const TimedPiece> pieces,
                                              const Machine& machine, double feed_override) {
   std::vector<TimedPiece> moving;
@@ -102,6 +97,11 @@ StretchChain stretches_of(std::span<const TimedPiece> pieces, const Machine& mac
   return look_ahead_stretches(pieces, machine, path, places);
 }
 
+bool takes_a_plan(const StretchChain& chain, double time) {
+  constexpr double kLeast = 0.01;
+  return chain.in_slow_curves > kLeast * time;
+}
+
 TimedChain::TimedChain(std::span<const TimedPiece> pieces, const Machine& machine,
                        double feed_override) {
   require_usable(machine);
@@ -110,7 +110,9 @@ TimedChain::TimedChain(std::span<const TimedPiece> pieces, const Machine& machin
 
 double TimedChain::time(const Machine& machine, gcode::PathMode path, ChainEnd end) const {
   const StretchChain chain = stretches_of(moving_, machine, path, end, WithPositions::kNo);
-  return profile_time(chain.stretches, chain.rules);
+  const double time = profile_time(chain.stretches, chain.rules);
+  if (!takes_a_plan(chain, time)) return time;
+  return PlannedMotion(moving_, machine, FeedPlanner::kJerk, path, kQuickPlanDensity).duration();
 }
 
 double cutting_time(std::span<const TimedPiece> pieces, const Machine& machine,

@@ -9,19 +9,10 @@
 #include "gcode/state/modal_state.h"
 #include "geometry/path/path.h"
 #include "postproc/machine/machine.h"
+#include "postproc/machine/models/timed_piece.h"
 #include "postproc/machine/models/velocity_profile.h"
 
 namespace batten::postproc {
-
-struct TimedPiece {
-  geometry::PathPiece piece;
-  double feed = 0;          // mm/min; 0: as fast as the machine cuts
-  bool rapid = false;       // at the rapid rate; on Klipper at `feed`, the last one
-  int bytes = 0;            // of its block, for a control that is fed by a line; 0: not known
-  bool says_speed = false;  // of the spindle: LinuxCNC begins such a block at rest
-  bool goes_on = false;     // of the block of the piece before it: a curve in several pieces
-  float arcs = 0;           // that LinuxCNC makes of a piece of a curve; 0: as of a G5 for itself
-};
 
 // What follows the chain. It matters on LinuxCNC alone, which brakes with half the
 // acceleration where it blends and no more motion comes.
@@ -42,6 +33,9 @@ struct StretchChain {
   std::vector<VelocityStretch> stretches;
   std::vector<StretchPlace> places;  // one for each stretch, or none when they are not wanted
   ProfileRules rules;
+  // s: what bends of curves take longer than their feed, under a limit on jerk. There the stretches
+  // may be a third too slow (takes_a_plan).
+  double in_slow_curves = 0;
 };
 
 enum class WithPositions { kNo, kYes };
@@ -62,10 +56,6 @@ enum class WithPositions { kNo, kYes };
                                               const Machine& machine, gcode::PathMode path,
                                               ChainEnd end, WithPositions places);
 
-// Whether the control comes to rest at the end of every block, even where the path runs straight
-// on: under exact stop, and under G61 where that is another word for it.
-[[nodiscard]] bool stops_at_block_ends(const Machine& machine, gcode::PathMode path);
-
 // Seconds from rest to rest. `path` says whether the control blends or keeps the exact path.
 // Pieces without length take no time. Linear cost.
 //
@@ -73,6 +63,10 @@ enum class WithPositions { kNo, kYes };
 // above 0, or a feed is negative or not a number.
 [[nodiscard]] double cutting_time(std::span<const TimedPiece> pieces, const Machine& machine,
                                   gcode::PathMode path, ChainEnd end = ChainEnd::kStop);
+
+// Whether slow bends of curves are more than a hundredth of the `time` (s) of the chain: then the
+// least-time plan (planned_chain.h) tells its time, with kQuickPlanDensity.
+[[nodiscard]] bool takes_a_plan(const StretchChain& chain, double time);
 
 // The time of one chain of pieces under several settings of its control: what they have in common
 // is done once.

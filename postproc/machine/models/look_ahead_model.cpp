@@ -27,10 +27,6 @@ struct BezierRule {
 constexpr BezierRule kByAcceleration = {};
 constexpr BezierRule kByJerk = {.halvings = 3, .even = 0.2};
 
-// Of the speed that the jerk allows in a bend of a curve: by slowing down before and speeding up
-// behind its sharpest place, a plan passes that so much faster than it could go on.
-constexpr double kPassing = 1.05;
-
 bool has_jerk_limit(const Machine& m) { return std::isfinite(std::min(m.max_jerk(), m.path_jerk)); }
 
 VelocityStretch line_stretch(const PathPiece& line, const Vector3& velocity, const Machine& m) {
@@ -64,7 +60,7 @@ HeldSpeeds held_speeds(const PathPiece& bend, int places, const Machine& m) {
       const double share =
           arc ? curvature * curvature / of_arc
               : derivatives_by_length(bend, t).third.cwiseQuotient(jerks).cwiseAbs().maxCoeff();
-      if (share > 0) speed = std::min(speed, (arc ? 1 : kPassing) / std::cbrt(share));
+      if (share > 0) speed = std::min(speed, 1 / std::cbrt(share));
     }
     held.least = std::min(held.least, speed);
     held.greatest = std::max(held.greatest, speed);
@@ -130,7 +126,8 @@ StretchChain look_ahead_stretches(std::span<const TimedPiece> pieces, const Mach
   StretchChain chain;
   chain.rules.look_ahead = machine.look_ahead;
   const bool all_stop = stops_at_block_ends(machine, path);
-  const BezierRule& rule = has_jerk_limit(machine) ? kByJerk : kByAcceleration;
+  const bool by_jerk = has_jerk_limit(machine);
+  const BezierRule& rule = by_jerk ? kByJerk : kByAcceleration;
   double block_length = 0;  // mm
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     const PathPiece& piece = pieces[i].piece;
@@ -143,6 +140,10 @@ StretchChain look_ahead_stretches(std::span<const TimedPiece> pieces, const Mach
       s.jerk = std::min(mean_limit_on(part, axis_jerks(machine)), machine.path_jerk);
       s.max_velocity = std::min(s.max_velocity, velocity);
       if (!(s.length > 0)) return;
+      if (by_jerk && std::holds_alternative<geometry::CubicBezier>(part)) {
+        const double at_feed = std::min(velocity, limit_on(part, axis_velocity));
+        chain.in_slow_curves += s.length / s.max_velocity - s.length / at_feed;
+      }
       chain.stretches.push_back(s);
       const auto index = static_cast<std::uint32_t>(i);
       if (places == WithPositions::kYes) chain.places.push_back({index, index, false, part});

@@ -117,8 +117,8 @@ class StepTimes {
       open_[chain.steps.front() - first_open_].seconds += chain.seconds;
       return count_up_to(chain.steps.front() + 1);
     }
-    if (planner_ != FeedPlanner::kControl) {
-      add_plan(chain);
+    if (const auto plan = plan_of(chain, planner_)) {
+      add_plan(chain, *plan);
     } else {
       const ChainMotion motion(chain.stretches);
       for (std::size_t i = 0; i < chain.stretches.places.size(); ++i) add_stretch(chain, motion, i);
@@ -126,9 +126,9 @@ class StepTimes {
     count_up_to(chain.steps[chain.end_counted - 1] + 1);
   }
 
-  void add_plan(const RunChain& chain) {
+  void add_plan(const RunChain& chain, const ChainPlan& plan) {
     const std::vector<PlannedPiece> planned =
-        planned_chain(chain.pieces, machine_, planner_, chain.path);
+        planned_chain(chain.pieces, machine_, plan.planner, chain.path, plan.density);
     for (std::uint32_t piece = chain.first_counted; piece < chain.end_counted; ++piece) {
       OpenStep& open = open_[chain.steps[piece] - first_open_];
       open.seconds += planned[piece].seconds;

@@ -10,7 +10,7 @@
 #include "gcode/state/motion.h"
 #include "gcode/text/program.h"
 #include "postproc/machine/machine.h"
-#include "postproc/machine/program_time/planned_chain.h"
+#include "postproc/machine/models/planned_chain.h"
 #include "postproc/machine/program_time/program_time_steps.h"
 
 namespace batten::postproc {

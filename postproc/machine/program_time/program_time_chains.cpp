@@ -90,6 +90,14 @@ void ChainCutter::use_part(ChainEnd end, std::size_t end_counted, const Use& use
   use(chain_);
 }
 
+std::optional<ChainPlan> plan_of(const RunChain& chain, FeedPlanner asked) {
+  if (asked != FeedPlanner::kControl) return ChainPlan{asked};
+  const StretchChain& stretches = chain.stretches;
+  if (!(stretches.in_slow_curves > 0)) return {};
+  if (!takes_a_plan(stretches, profile_time(stretches.stretches, stretches.rules))) return {};
+  return ChainPlan{FeedPlanner::kJerk, kQuickPlanDensity};
+}
+
 ChainMotion::ChainMotion(const StretchChain& chain)
     : chain_(chain), velocities_(joint_velocities(chain.stretches, chain.rules)) {
   const auto& stretches = chain.stretches;

@@ -4,11 +4,13 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "postproc/machine/machine.h"
 #include "postproc/machine/models/cycle_time.h"
 #include "postproc/machine/models/jerk_motion.h"
+#include "postproc/machine/models/planned_chain.h"
 #include "postproc/machine/models/velocity_profile.h"
 #include "postproc/machine/program_time/program_time_steps.h"
 
@@ -31,6 +33,15 @@ struct RunChain {
   // mm, of the pieces that a stretch serves.
   [[nodiscard]] double length_of(const StretchPlace& place) const;
 };
+
+// What times a chain in place of its stretches.
+struct ChainPlan {
+  FeedPlanner planner = FeedPlanner::kJerk;
+  double density = kPlanDensity;
+};
+
+// Nothing where its stretches do: they are asked for (kControl), and near enough (takes_a_plan).
+[[nodiscard]] std::optional<ChainPlan> plan_of(const RunChain& chain, FeedPlanner asked);
 
 // Cuts steps, numbered from 0 as they are added, into chains. Times of tool changes and of the
 // spindle are the machine's.

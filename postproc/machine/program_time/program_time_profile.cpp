@@ -25,7 +25,7 @@ class Sampler {
   void run(const RunChain& chain) {
     if (stopped_) return;
     if (chain.pieces.empty()) return wait(chain);
-    if (planner_ != FeedPlanner::kControl) return run_plan(chain);
+    if (const auto plan = plan_of(chain, planner_)) return run_plan(chain, *plan);
     const ChainMotion motion(chain.stretches);
     for (std::size_t i = 0; i < chain.stretches.places.size() && !stopped_; ++i) {
       run_stretch(chain, motion, i);
@@ -50,8 +50,8 @@ class Sampler {
     start_ = end;
   }
 
-  void run_plan(const RunChain& chain) {
-    const PlannedMotion motion(chain.pieces, machine_, planner_, chain.path);
+  void run_plan(const RunChain& chain, const ChainPlan& plan) {
+    const PlannedMotion motion(chain.pieces, machine_, plan.planner, chain.path, plan.density);
     begin_at_start_of(chain.pieces.front().piece);
     const double end = start_ + motion.duration();
     while (next_time() < end && !stopped_) {

@@ -9,6 +9,7 @@
 #include "geometry/basic/point.h"
 #include "geometry/fitting/fair/fair.h"
 #include "geometry/fitting/tube/tube_smoothing.h"
+#include "postproc/machine/planner/feed_plan.h"
 #include "postproc/smooth/methods/curve_request.h"
 
 namespace batten::postproc {
@@ -21,8 +22,7 @@ struct TubeTuning {
   // Control points that stay at both ends of a part: its ends, or tangents and curvatures, too.
   int hold_position = 1;
   int hold_curvature = 3;
-  // Nodes of the plans that times are compared by: a third of what is usual, good to a permille.
-  double density = 2;
+  double density = kQuickPlanDensity;  // of the plans that times are compared by
   // About so many nodes are planned of each curve, in so many samples of it where it has more.
   double planned = 2500;
   double samples = 10;

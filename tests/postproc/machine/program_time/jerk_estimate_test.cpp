@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "postproc/machine/program_time/planned_chain.h"
+#include "postproc/machine/models/planned_chain.h"
 #include "tests/support/machine_limits.h"
 #include "tests/support/planned_paths.h"
 
@@ -89,19 +89,50 @@ std::vector<TimedPiece> tangent_arcs(double feed) {
   return chain;
 }
 
-// Bends everywhere that are slower than the feed, but for the least one, and over before the speed
-// has settled: where the estimate is farthest off, and too slow.
-std::vector<TimedPiece> spline_of_all_bends(double feed) {
-  std::vector<Point3> control;
+std::vector<TimedPiece> pieces_of(const std::vector<Point3>& control, double feed) {
   std::vector<double> knots;
-  constexpr int kPieces = 60;
-  for (int i = -1; i < kPieces + 2; ++i) {
-    control.emplace_back(2 * i, 4 * std::sin(0.7 * i) + std::sin(2.3 * i), std::sin(1.1 * i));
-    if (i >= 0 && i <= kPieces) knots.push_back(i);
-  }
+  for (std::size_t i = 0; i + 2 < control.size(); ++i) knots.push_back(static_cast<double>(i));
   std::vector<TimedPiece> chain;
   const geometry::BsplineCurve curve(geometry::BsplineBasis::clamped(3, knots), control);
   for (const geometry::CubicBezier& piece : curve.bezier_pieces()) chain.push_back({piece, feed});
+  return chain;
+}
+
+// Bends everywhere that are slower than the feed, but for the least one, and over before the speed
+// has settled: stretches of held speeds are farthest off there, and too slow.
+std::vector<TimedPiece> spline_of_all_bends(double feed) {
+  std::vector<Point3> control;
+  for (int i = -1; i < 62; ++i) {
+    control.emplace_back(2 * i, 4 * std::sin(0.7 * i) + std::sin(2.3 * i), std::sin(1.1 * i));
+  }
+  return pieces_of(control, feed);
+}
+
+// Round lobes, about whose sharp places the speed rises and falls.
+std::vector<TimedPiece> lobes(double feed) {
+  std::vector<Point3> control;
+  for (int i = 0; i < 80; ++i) {
+    const double angle = 2 * 3.14159265 * i / 79;
+    const double radius = 20 + 6 * std::cos(9 * angle);
+    control.emplace_back(radius * std::cos(angle), radius * std::sin(angle), 0);
+  }
+  return pieces_of(control, feed);
+}
+
+std::vector<TimedPiece> spline_of_scattered_points(double feed) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> place(0, 40);
+  std::vector<Point3> control;
+  for (int i = 0; i < 40; ++i) control.emplace_back(place(random), place(random), place(random));
+  return pieces_of(control, feed);
+}
+
+// A slow curve in the midst of lines, by which most of the time goes.
+std::vector<TimedPiece> curve_among_lines(double feed) {
+  std::vector<TimedPiece> chain = lobes(feed);
+  const Point3 end = geometry::end_point(chain.back().piece);
+  const Vector3 on = geometry::direction_at(chain.back().piece, 1);
+  chain.push_back({Line{end, end + 2000 * on}, feed});
   return chain;
 }
 
@@ -129,7 +160,10 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(EstimateCase{"PrintedChords", printed_chords, 0.01},
                     EstimateCase{"CornersOfManyFeeds", corners_of_many_feeds, 0.01},
                     EstimateCase{"TangentArcs", tangent_arcs, 0.01},
-                    EstimateCase{"SplineOfAllBends", spline_of_all_bends, 0.13}),
+                    EstimateCase{"SplineOfAllBends", spline_of_all_bends, 0.002},
+                    EstimateCase{"Lobes", lobes, 0.002},
+                    EstimateCase{"SplineOfScatteredPoints", spline_of_scattered_points, 0.01},
+                    EstimateCase{"CurveAmongLines", curve_among_lines, 0.01}),
     [](const auto& test) { return test.param.name; });
 
 // Without a limit on jerk a joint goes by the speed of the axes alone, as it did.

@@ -474,6 +474,27 @@ std::string zigzag_with(const std::string& mode, const std::string& blending = "
   return text + "M2\n";
 }
 
+// The choice of `smooth`, `batten time` and its profile tell the same seconds of curves that slow
+// the machine down under a limit on jerk, which are those of the plan.
+TEST(SlowCurves, TakeWhatThePlanTakes) {
+  const Machine& machine = *find_machine("high-speed");
+  std::string text = tests::curve_program({.kink = 0}, tests::CurveWord::kG062);
+  text.replace(text.find("F2000"), 5, "F20000");
+  const tests::Interpreted program(text, {.curves = gcode::find_control("fanuc")->curves});
+  const ProgramSteps steps = read_steps(program.program, program.read, from_zero());
+  const auto cutting = [&](FeedPlanner planner) {
+    return time_program(program.program, program.read, machine, from_zero(), planner)
+        .seconds.cutting;
+  };
+  const double told = cutting(FeedPlanner::kControl);
+  EXPECT_NEAR(told, cutting(FeedPlanner::kJerk), 0.002 * told);
+  std::vector<TimedPiece> pieces;
+  for (const ProgramStep& step : steps.steps) {
+    if (step.kind == StepKind::kCut) pieces.push_back({step.piece, step.feed});
+  }
+  EXPECT_NEAR(cutting_time(pieces, machine, gcode::PathMode::kBlending), told, 1e-9);
+}
+
 class ExactStop : public testing::TestWithParam<std::string> {
  protected:
   const Machine& machine_ = *find_machine("high-speed");

@@ -194,15 +194,16 @@ TEST(BestMethod, IsNotSlowerThanAnyOnAStarAndThreePerCentFasterThanGuoLiteral) {
   }
 }
 
-// Naseath's noisy line at 24 m/min on his machine, which limits its jerk, or on the same without.
-SmoothResult best_of_noisy_line(double jerk) {
+// One of Naseath's curves at 24 m/min on his machine, which limits its jerk, or on the same
+// without.
+SmoothResult best_of_case(const std::string& name, double jerk, int samples = 8) {
   Machine machine = *find_machine("high-speed");
   set_xyz(machine, &AxisLimits::velocity, 400);
   set_xyz(machine, &AxisLimits::acceleration, 4000);
   set_xyz(machine, &AxisLimits::jerk, jerk);
-  const geometry::BsplineCurve curve = geometry::curve_of_case("tc5b");
+  const geometry::BsplineCurve curve = geometry::curve_of_case(name);
   std::vector<geometry::Point3> points;
-  for (const auto& sample : geometry::parameter_samples(curve, 8)) {
+  for (const auto& sample : geometry::parameter_samples(curve, samples)) {
     points.push_back(curve.point_at(sample.parameter));
   }
   SmoothOptions options = options_with(Method::kBest, "siemens", 0.125);
@@ -211,7 +212,7 @@ SmoothResult best_of_noisy_line(double jerk) {
 }
 
 TEST(BestMethod, TakesTheTubeWhereJerkIsLimitedAndItsBoundLeavesMuchToWin) {
-  const SmoothResult result = best_of_noisy_line(20000);
+  const SmoothResult result = best_of_case("tc5b", 20000);
   EXPECT_TRUE(result.proved);
   const RunReport& run = rewritten_run(result);
   EXPECT_EQ(run.method, "tube");
@@ -220,8 +221,18 @@ TEST(BestMethod, TakesTheTubeWhereJerkIsLimitedAndItsBoundLeavesMuchToWin) {
   EXPECT_LT(run.time_after_s, 0.8 * fair->time_s);
 }
 
+// Of the speeds that bends could be held at both would take the same.
+TEST(BestMethod, TakesTheTubeWhereAPlanOfItIsFaster) {
+  const SmoothResult result = best_of_case("tc2", 20000, 30);
+  const RunReport& run = rewritten_run(result);
+  EXPECT_EQ(run.method, "tube");
+  const auto fair = std::ranges::find(run.methods, "fair", &MethodTime::method);
+  ASSERT_NE(fair, run.methods.end());
+  EXPECT_LT(run.time_after_s, 0.95 * fair->time_s);
+}
+
 TEST(BestMethod, DoesNotTryTheTubeWhereNothingLimitsJerk) {
-  const SmoothResult result = best_of_noisy_line(std::numeric_limits<double>::infinity());
+  const SmoothResult result = best_of_case("tc5b", std::numeric_limits<double>::infinity());
   for (const RunReport& run : result.runs) {
     EXPECT_EQ(std::ranges::find(run.methods, "tube", &MethodTime::method), run.methods.end());
   }

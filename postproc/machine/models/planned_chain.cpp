@@ -1,4 +1,4 @@
-#include "postproc/machine/program_time/planned_chain.h"
+#include "postproc/machine/models/planned_chain.h"
 
 #include <algorithm>
 #include <cmath>
@@ -42,11 +42,13 @@ constexpr double kLittle = 0.1;
 // between them.
 class JerkPlan {
  public:
-  JerkPlan(std::span<const TimedPiece> pieces, const Machine& machine, bool stops_at_ends)
+  JerkPlan(std::span<const TimedPiece> pieces, const Machine& machine, bool stops_at_ends,
+           double density)
       : pieces_(pieces),
         machine_(machine),
         along_(s_curve_limits(machine)),
-        stops_at_ends_(stops_at_ends) {}
+        stops_at_ends_(stops_at_ends),
+        density_(density) {}
 
   std::vector<FeedPlanNode> run() {
     for (std::size_t i = 0; i < pieces_.size(); ++i) {
@@ -95,7 +97,7 @@ class JerkPlan {
   // From the speed that the plan has come to, to this one, both held; 0 is rest.
   void plan_up_to(double end_speed) {
     const double start_speed = nodes_.empty() ? 0 : nodes_.back().speed;
-    const FeedPlan plan = plan_feed(path_, limits_, {start_speed, end_speed, true});
+    const FeedPlan plan = plan_feed(path_, limits_, {start_speed, end_speed, true}, density_);
     const FeedPlanNode from = nodes_.empty() ? FeedPlanNode{} : nodes_.back();
     if (!nodes_.empty()) nodes_.pop_back();
     for (FeedPlanNode node : plan.nodes) {
@@ -121,6 +123,7 @@ class JerkPlan {
   const Machine& machine_;
   SCurveLimits along_;
   bool stops_at_ends_;
+  double density_;
   std::vector<geometry::PathPiece> path_;  // that is not yet planned
   std::vector<KinematicPathLimits> limits_;
   std::vector<Part> parts_;
@@ -230,7 +233,7 @@ std::vector<JerkPhase> by_s_curves(std::span<const TimedPiece> pieces, const Mac
 }  // namespace
 
 PlannedMotion::PlannedMotion(std::span<const TimedPiece> pieces, const Machine& machine,
-                             FeedPlanner planner, gcode::PathMode path)
+                             FeedPlanner planner, gcode::PathMode path, double density)
     : pieces_(pieces) {
   if (planner == FeedPlanner::kControl) {
     throw std::invalid_argument("PlannedMotion: the model of a control is no plan");
@@ -238,7 +241,7 @@ PlannedMotion::PlannedMotion(std::span<const TimedPiece> pieces, const Machine& 
   if (pieces.empty()) return;
   const bool stops_at_ends = stops_at_block_ends(machine, path);
   if (planner == FeedPlanner::kJerk) {
-    nodes_ = JerkPlan(pieces, machine, stops_at_ends).run();
+    nodes_ = JerkPlan(pieces, machine, stops_at_ends, density).run();
     if (!nodes_.empty()) duration_ = nodes_.back().time;
     return;
   }
@@ -291,8 +294,8 @@ std::vector<PlannedPiece> PlannedMotion::times_of_pieces() const {
 }
 
 std::vector<PlannedPiece> planned_chain(std::span<const TimedPiece> pieces, const Machine& machine,
-                                        FeedPlanner planner, gcode::PathMode path) {
-  return PlannedMotion(pieces, machine, planner, path).times_of_pieces();
+                                        FeedPlanner planner, gcode::PathMode path, double density) {
+  return PlannedMotion(pieces, machine, planner, path, density).times_of_pieces();
 }
 
 }  // namespace batten::postproc

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "postproc/machine/machine.h"
-#include "postproc/machine/models/cycle_time.h"
 #include "postproc/machine/models/jerk_motion.h"
+#include "postproc/machine/models/timed_piece.h"
 #include "postproc/machine/planner/feed_plan.h"
 
 namespace batten::postproc {
@@ -47,10 +47,11 @@ struct PlannedPosition {
 // and across it; without a limit on jerk the speed changes at once with all of the acceleration.
 class PlannedMotion {
  public:
-  // Keeps a reference to `pieces`. Throws std::invalid_argument for kControl.
+  // Keeps a reference to `pieces`. `density`: of a plan by kJerk. Throws std::invalid_argument for
+  // kControl.
   // tests/bench/feed_plan_cost prints how many pieces a second kJerk plans.
   PlannedMotion(std::span<const TimedPiece> pieces, const Machine& machine, FeedPlanner planner,
-                gcode::PathMode path = gcode::PathMode::kBlending);
+                gcode::PathMode path = gcode::PathMode::kBlending, double density = kPlanDensity);
 
   [[nodiscard]] double duration() const { return duration_; }  // s
 
@@ -74,6 +75,6 @@ class PlannedMotion {
 // Of each piece of the chain, as PlannedMotion has them.
 [[nodiscard]] std::vector<PlannedPiece> planned_chain(
     std::span<const TimedPiece> pieces, const Machine& machine, FeedPlanner planner,
-    gcode::PathMode path = gcode::PathMode::kBlending);
+    gcode::PathMode path = gcode::PathMode::kBlending, double density = kPlanDensity);
 
 }  // namespace batten::postproc

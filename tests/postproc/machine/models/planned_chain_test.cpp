@@ -1,5 +1,5 @@
 // Times of chains by a feed plan: closed forms of lines, and what holds for any chain.
-#include "postproc/machine/program_time/planned_chain.h"
+#include "postproc/machine/models/planned_chain.h"
 
 #include <gtest/gtest.h>
 
