@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <ranges>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -164,9 +163,10 @@ std::vector<Json> printed_in(const nlohmann::json& given, const TableCase& of) {
     for (const auto& [key, value] : row.items()) {
       if (key == "method" || key == "tolerance") continue;
       if (std::ranges::find(columns_of(of), key, &Column::key) == columns_of(of).end()) {
+        std::vector<std::string_view> names;
+        for (const Column& column : columns_of(of)) names.push_back(column.key);
         throw TableError(
-            fmt::format("{}: {}: expected one of {}", what, key,
-                        fmt::join(columns_of(of) | std::views::transform(&Column::key), ", ")));
+            fmt::format("{}: {}: expected one of {}", what, key, fmt::join(names, ", ")));
       }
       read[key] = number_in(value, what + ": " + key);
     }
