@@ -8,7 +8,8 @@ random forms, by random methods, preferences and tolerances. What is written has
 program did, by readers that share no code with Batten (readers.py, oracle.py) and by LinuxCNC's own
 interpreter, where `rs274` is installed and accepts the old program; it has to be proved by `verify`,
 too. Then the new program is damaged (damage.py) and given to `verify`, and where there is a
-certificate to tools/check_certificate.py: whatever they accept has to be harmless.
+certificate to tools/check_certificate.py: whatever they accept has to be harmless. So has what `verify`
+accepts where a weight of the old program is another one than that which was smoothed.
 
 --folder keeps what is found, each program with its command, and the progress: the same call goes on
 where it was stopped, unless it says --anew. Prints a line for each finding and a table at the end; exits with 1 when there
@@ -34,7 +35,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parents[1] / "tools")]
 import check_certificate  # noqa: E402
 import oracle  # noqa: E402
-from damage import Damage  # noqa: E402
+from damage import WEIGHT, Damage  # noqa: E402
 from programs import FORMS, LIKE, STYLES, TARGETS, Programs  # noqa: E402
 
 PROVED, REFUSED, NOT_PROVED = 0, 2, 3
@@ -130,6 +131,9 @@ class Tries:
                 self.counts[f"not certified: {why}"] += 1
                 proof = None
         for n in range(damages):
+            if WEIGHT.search(text) and chance.random() < 0.4:
+                self.other_weight(f"{name}-{n}", target, new, text, tolerance, verify, chance)
+                continue
             self.damaged(f"{name}-{n}", target, new, text, old, canon, tolerance, verify, proof, chance)
 
     def count(self, target, *what):
@@ -152,6 +156,21 @@ class Tries:
             code = check_certificate.main([str(self.old), str(self.new), str(self.certificate), "--control", target,
                                            "--tolerance", str(tolerance)])
         return code == 0, said.getvalue()
+
+    def other_weight(self, name, target, new, text, tolerance, verify, chance):
+        """The new program is one of an old one that has another weight."""
+        broken = "\n".join(Damage(False, "", chance).damage_other_weight(text.split("\n"), 0))
+        self.old.write_text(broken)
+        self.new.write_bytes(new.encode("latin1"))
+        self.count(target, "damaged")
+        code, said = self.run(*verify)
+        harm = oracle.OldProgram(broken, target).harm(new, tolerance) if code == PROVED else ""
+        self.count(target, "damaged, proved" if code == PROVED else "weights damaged, not proved")
+        if code not in (PROVED, NOT_PROVED, REFUSED):
+            harm = f"verify ended with {code}: {said.strip()[-200:]}"
+        if harm:
+            self.found(name, f"other weight in the old program: {harm}", verify, {"old": broken, "new": new, "undamaged": text})
+        self.old.write_text(text)
 
     def damaged(self, name, target, new, text, old, canon, tolerance, verify, proof, chance):
         like = LIKE.get(target, target)

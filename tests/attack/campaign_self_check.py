@@ -83,10 +83,35 @@ M30
 FANUC_CHANGES = [
     ("K0. X4. Y1.", "K0. X4. Y1.2", True, "a control point moved"),
     ("K0. X4. Y1.", "K0. X4. Y1.005", False, "a control point moved by less than the tolerance"),
+    ("K0. X4. Y1.", "K0. X4. Y1. R2.", True, "a weight"),
+    ("K0. X4. Y1.", "K0. X4. Y1. R1.005", False, "a weight that moves the curve by less than the tolerance"),
+    ("K0. X4. Y1.", "K0. X4. Y1. R0.", True, "a weight that is not positive"),
     ("K1.\nK1.\nK1.\nK1.", "K1.\nK1.\nK1.\nK2.", True, "knots that are not clamped"),
     ("M98 P7\nX7. Y1.", "M98 P7\nX6.9 Y1.\nX7.", True, "a place behind a call, whatever it leaves"),
     ("M98 P7", "M98 P8", True, "another call"),
     ("X6. Y1.\nM98 P7", "M98 P7\nX6. Y1.", True, "a call a move too early"),
+]
+EVEN = """G21 G17 G90 G94
+G0 X0 Y0 Z0
+G1 X1 Y0 F500
+G5.2 L5
+X2 Y2 P0.5
+X4 Y2 P2
+X5 Y0 P1.5
+X6 Y0 P1
+G5.3
+G1 X7 Y0
+M2
+"""
+EVEN_CHANGES = [
+    ("P0.5", "P0.6", True, "another weight"),
+    ("P0.5", "P0.501", False, "a weight that moves the curve by less than the tolerance"),
+    ("P2", "P0", True, "a weight that is not positive"),
+    ("P1.5", "", True, "a point without its weight"),
+    ("L5", "L4", True, "another order"),
+    ("L5", "L6", True, "an order above the number of points"),
+    ("X4 Y2 P2\n", "", True, "a point lost"),
+    ("L5\nX2 Y2 P0.5", "X2 Y2 P0.5 L5", False, "the first point beside G5.2"),
 ]
 SIEMENS = """G71 G17 G90 G94
 G0 X0 Y0 Z0
@@ -107,6 +132,46 @@ SIEMENS_CHANGES = [
     ("POLY PO", "PO", True, "no POLY"),
     ("G1 X6 Y1\nG1 X7 Y1", "G1 X6.5 Y1\nG1 X7 Y1", True, "a place behind what nobody knows"),
     ("CYCLE832(0.05,3,1)\n", "", True, "a word lost"),
+]
+RATIONAL = """G71 G17 G90 G94
+G0 X10 Y0 Z0
+G1 X10 Y0 Z0 F500
+POLY PO[X]=(0,-10) PO[Y]=(10) PO[]=(2,1)
+PO[X]=(-2,3,1,-2,1) PO[Y]=(9,1,0,0.5,-0.5)
+G1 X-4 Y9
+M30
+"""
+RATIONAL_CHANGES = [
+    ("POLY PO[X]=(0,-10) PO[Y]=(10) PO[]=(2,1)\nPO", "G3 X0 Y10 CR=10\nPOLY PO", False, "the arc that the polynomials are"),
+    ("PO[]=(2,1)", "PO[]=(2,1.02)", True, "another denominator"),
+    ("PO[]=(2,1)", "PO[]=(2,1.0005)", False, "a denominator that moves the curve by less than the tolerance"),
+    (" PO[]=(2,1)", "", True, "no denominator"),
+    ("PO[]=(2,1)", "PO[]=(2,-9)", True, "a denominator that falls below zero"),
+    ("1,-2,1)", "1,-2)", True, "no fifth power"),
+    ("1,-2,1)", "1,-1,0)", True, "another fourth power"),
+    ("1,-2,1)", "1,-2,1) PL=1.1", True, "another length of the parameter"),
+    ("PO[X]=(-2,3,1,-2,1) PO[Y]=(9,1,0,0.5,-0.5)", "PO[X]=(-2,12,8,-32,32) PO[Y]=(9,4,0,8,-16) PL=0.5", False,
+     "another length of the parameter, and coefficients for it"),
+]
+BSPLINE = """G71 G17 G90 G94
+G0 X0 Y0 Z0
+G1 X1 Y0 F500
+BSPLINE SD=3 X2 Y2 PL=1 PW=0.5
+X4 Y2 PL=2 PW=2
+X5 Y0 PL=0 PW=1.5
+X6 Y0 PL=0
+G1 X7 Y0
+M30
+"""
+BSPLINE_CHANGES = [
+    ("PW=0.5", "PW=0.6", True, "another weight"),
+    ("PW=0.5", "PW=0.501", False, "a weight that moves the curve by less than the tolerance"),
+    (" PW=2", "", True, "no weight"),
+    ("PW=2", "PW=-2", True, "a weight that is not positive"),
+    ("PL=1 ", "PL=1.5 ", True, "another span"),
+    ("PL=1 PW=0.5\nX4 Y2 PL=2", "PL=2 PW=0.5\nX4 Y2 PL=4", False, "the same spans twice as long"),
+    ("SD=3", "SD=2", True, "another degree"),
+    ("X6 Y0 PL=0", "X6 Y0 PL=1", True, "a last span that is none"),
 ]
 KLARTEXT = """BEGIN PGM A MM
 TOOL CALL 1 Z S500
@@ -165,7 +230,9 @@ PART_CHANGES = [
      False, "the words of a part lost, and elsewhere a place of another part moved by less than that states"),
 ]
 CASES = [("linuxcnc", PLAIN, PLAIN_CHANGES), ("grbl", PLAIN, PLAIN_CHANGES), ("fanuc", FANUC, FANUC_CHANGES),
-         ("siemens", SIEMENS, SIEMENS_CHANGES), ("heidenhain", KLARTEXT, KLARTEXT_CHANGES), ("linuxcnc", PARTS, PART_CHANGES)]
+         ("siemens", SIEMENS, SIEMENS_CHANGES), ("heidenhain", KLARTEXT, KLARTEXT_CHANGES), ("linuxcnc", PARTS, PART_CHANGES),
+         ("linuxcnc", EVEN, EVEN_CHANGES), ("siemens", RATIONAL, RATIONAL_CHANGES),
+         ("siemens-bspline", BSPLINE, BSPLINE_CHANGES)]
 
 
 # What the campaign found: lines 5 to 7 of this became others; what stands behind them; whether it is
@@ -223,8 +290,30 @@ def check_together():
     return wrong
 
 
+def check_weights():
+    """A half circle in two quadratic pieces with weights, and one of degree five by its definition."""
+    wrong = []
+    control = [(10.0, 0.0, 0.0), (10.0, 10.0, 0.0), (0.0, 10.0, 0.0), (-10.0, 10.0, 0.0), (-10.0, 0.0, 0.0)]
+    root = math.sqrt(0.5)
+    points = control[:1] + paths.nurbs_points(3, control, [1, root, 1, root, 1], [0, 0, 0, 1, 1, 3, 3, 3])
+    off = [abs(math.hypot((p[0] + q[0]) / 2, (p[1] + q[1]) / 2) - 10) for p, q in zip(points, points[1:])]
+    if max(off) > paths.CHORD_ERROR or max(abs(math.hypot(*p) - 10) for p in points) > 1e-9:
+        wrong.append(f"a circle that is {max(off)} mm off")
+    control = [(0.0, 0.0, 0.0), (1.0, 3.0, 0.0), (3.0, 4.0, 1.0), (5.0, 3.0, 0.0), (6.0, -2.0, 2.0), (9.0, 0.0, 0.0)]
+    weights = [1.0, 0.4, 2.5, 0.7, 1.9, 1.2]
+
+    def at(t):
+        parts = [math.comb(5, i) * t ** i * (1 - t) ** (5 - i) * w for i, w in enumerate(weights)]
+        return tuple(math.fsum(b * p[axis] for b, p in zip(parts, control)) / math.fsum(parts) for axis in range(3))
+
+    if not paths.together(control[:1] + paths.nurbs_points(6, control, weights, [0.0] * 6 + [1.0] * 6),
+                          [at(n / 2000) for n in range(2001)], 0.0005):
+        wrong.append("a curve of degree five that is not its sum of Bernstein polynomials")
+    return wrong
+
+
 def main():
-    wrong = check_together() + check_found()
+    wrong = check_together() + check_weights() + check_found()
     for control, text, changes in CASES:
         old = oracle.OldProgram(text, control)
         canon = oracle.Canon(text) if control in oracle.LIKE_LINUXCNC and oracle.rs274_is_there() else None
@@ -237,7 +326,8 @@ def main():
                 raise ValueError(f"{control}: {before!r} is not once in the text")
             new = text.replace(before, after)
             found = {"readers": old.harm(new, TOLERANCE)}
-            if canon and text != PARTS and "plane" not in name:  # rs274 does not tell the plane but by its arcs
+            # rs274 tells no curves, and the plane by its arcs alone.
+            if canon and text not in (PARTS, EVEN) and "plane" not in name:
                 found["rs274"] = oracle.harm_in_linuxcnc(canon, new, TOLERANCE)
             for who, harm in found.items():
                 if bool(harm) != harmful:

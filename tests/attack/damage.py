@@ -4,6 +4,8 @@ import re
 
 ADDED = """G0 G2 G3 G91 G90 G18 G20 F100 M8 M9 X5 Y5 Z1 I1 J1 G53 G41 G93 G95 G64 G61 S300 M5 G55 / M0 P1 R5
     N5 N-1 G4 E1 A5 T3 H2 D1 ( (a) (a(b) ;a""".split()
+# Of G5.2, G06.2, BSPLINE and POLY.
+WEIGHT = re.compile(r"(PW=|PO\[\]=\(|^(?:N\d+ ?)?(?:G5\.2 ?)?X[-\d.]+ ?Y[-\d.]+ ?P|K[\d.]+[^R\n]*R)(\d+\.?\d*)", re.M)
 ADDED_KLARTEXT = """FMAX F100 M8 M9 M5 R0 RL RR X+5 IY+1 Z+1 M91 M3 DR+ M89 M90 A+5 M0 S300 / M2""".split()
 
 
@@ -154,6 +156,14 @@ class Damage:
 
     def damage_lost_lines(self, lines, at):
         return lines[:at] + lines[at + self.random.choice([2, 4, 9]):]
+
+    def damage_other_weight(self, lines, at):
+        at = self.line_with(lines, WEIGHT)
+        if at is None:
+            return None
+        factor = self.random.choice([0.2, 0.7, 0.98, 1.01, 1.5, 6, 0, -1])
+        line = WEIGHT.sub(lambda m: f"{m.group(1)}{float(m.group(2)) * factor:.4f}", lines[at], count=1)
+        return lines[:at] + [line] + lines[at + 1:]
 
     def damage_other_comment(self, lines, at):
         at = self.line_with(lines, r"[(;]")

@@ -56,26 +56,62 @@ def cubic_points(b0, b1, b2, b3):
     return points
 
 
+def off_chord(p, a, b):
+    """The distance of p from the line between a and b."""
+    along = [y - x for x, y in zip(a, b)]
+    square = math.fsum(v * v for v in along)
+    t = math.fsum(v * (z - x) for v, z, x in zip(along, p, a)) / square if square > 0 else 0.0
+    t = min(1.0, max(0.0, t))
+    return math.dist(p, [x + t * v for x, v in zip(a, along)])
+
+
+def chords(at, low, high):
+    """Points of the curve at(u), u from low to high, behind the first one: chords are halved until the
+    curve is near enough at three places of each."""
+    points = []
+
+    def add(u, p, v, q, depth):
+        inner = [at(u + (v - u) * n / 4) for n in (1, 2, 3)]
+        if depth < 12 and max(off_chord(x, p, q) for x in inner) > CHORD_ERROR / 2:
+            middle = u + (v - u) / 2
+            add(u, p, middle, inner[1], depth + 1)
+            add(middle, inner[1], v, q, depth + 1)
+        else:
+            points.append(q)
+
+    places = [low + (high - low) * n / 4 for n in range(5)]
+    for u, v in zip(places, places[1:]):
+        add(u, at(u), v, at(v), 0)
+    return points
+
+
 def nurbs_points(order, control, weights, knots):
     """Of a clamped NURBS, behind its first point: de Boor in homogeneous coordinates."""
     points = []
-    size = math.fsum(math.dist(a, b) for a, b in zip(control, control[1:]))
     homogeneous = [tuple(w * x for x in p) + (w,) for p, w in zip(control, weights)]
+
+    def at(u):
+        d = homogeneous[span - order + 1:span + 1]
+        for r in range(1, order):
+            for j in range(order - 1, r - 1, -1):
+                a, b = knots[span - order + 1 + j], knots[span + 1 + j - r]
+                t = (u - a) / (b - a) if b > a else 0.0
+                d[j] = tuple((1 - t) * p + t * q for p, q in zip(d[j - 1], d[j]))
+        return tuple(x / d[-1][3] for x in d[-1][:3])
+
     for span in range(order - 1, len(control)):
-        low, high = knots[span], knots[span + 1]
-        if high <= low:
-            continue
-        count = max(8, min(60, int(size / len(control) / 0.02)))
-        for n in range(1, count + 1):
-            u = low + (high - low) * n / count
-            d = homogeneous[span - order + 1:span + 1]
-            for r in range(1, order):
-                for j in range(order - 1, r - 1, -1):
-                    a, b = knots[span - order + 1 + j], knots[span + 1 + j - r]
-                    t = (u - a) / (b - a) if b > a else 0.0
-                    d[j] = tuple((1 - t) * p + t * q for p, q in zip(d[j - 1], d[j]))
-            points.append(tuple(x / d[-1][3] for x in d[-1][:3]))
+        if knots[span] < knots[span + 1]:
+            points += chords(at, knots[span], knots[span + 1])
     return points
+
+
+def polynomial_points(axes, denominator):
+    """Of sums a0 + a1 t + a2 t^2 .. over another, t from 0 to 1, behind t = 0; None where the denominator
+    is not above zero everywhere."""
+    value = lambda a, t: math.fsum(x * t ** k for k, x in enumerate(a))  # noqa: E731
+    if min(value(denominator, n / 1000) for n in range(1001)) <= 0:
+        return None
+    return chords(lambda t: tuple(value(a, t) / value(denominator, t) for a in axes), 0.0, 1.0)
 
 
 def extent(points):

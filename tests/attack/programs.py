@@ -44,11 +44,12 @@ BETWEEN["grbl"] = """M8|M9|M7|G4 P0.5|(hi)|M3 S1000|S2000|G55|G54|F777|M8 F888|G
 BETWEEN["marlin"] = """M106 S255|M107|G4 P50|; hi|M3 S100|M5|F777|G1 F888|G91|G90|G92 X1|G28|M204 P500|G0 Z5;G1 Z0 F300|
     G1 X5 E1|M117 hello|M400|G21|G17|G123|T1|M0|G1 X1 Y1 F60|M82|M83|G92 E0|G2 X5 Y5 I1 J1"""
 LIKE = {"grblhal": "grbl", "mach3": "grbl", "haas": "fanuc", "mitsubishi": "fanuc", "hurco": "fanuc", "syntec": "fanuc",
-        "klipper": "marlin", "itnc530": "heidenhain"}
-TARGETS = ["linuxcnc"] * 4 + ["grbl", "grbl", "fanuc", "fanuc", "siemens", "siemens", "heidenhain", "heidenhain", "itnc530",
-                              "marlin", "klipper", "grblhal", "mach3", "haas", "mitsubishi", "hurco", "syntec"]
+        "klipper": "marlin", "itnc530": "heidenhain", "siemens-bspline": "siemens"}
+TARGETS = ["linuxcnc"] * 4 + ["grbl", "grbl", "fanuc", "fanuc", "siemens", "siemens", "siemens-bspline", "heidenhain", "heidenhain",
+                              "itnc530", "marlin", "klipper", "grblhal", "mach3", "haas", "mitsubishi", "hurco", "syntec"]
 FORMS = {"linuxcnc": ["arcs", "lines", "curves"], "fanuc": ["arcs", "lines", "curves"], "mitsubishi": ["arcs", "curves"],
-         "syntec": ["arcs", "curves"], "siemens": ["arcs", "lines", "curves"], "itnc530": ["arcs", "lines", "curves"]}
+         "syntec": ["arcs", "curves"], "siemens": ["arcs", "lines", "curves"],
+         "siemens-bspline": ["arcs", "lines", "curves"], "itnc530": ["arcs", "lines", "curves"]}
 HEADS = {
     "linuxcnc": "G21 G17 G90 G94 G64 P0.01|G0 X0 Y0 Z5|G1 Z0 F200",
     "fanuc": "%|O1|G21 G17 G90 G94|G0 X0. Y0. Z5.|G1 Z0. F200.",
@@ -63,9 +64,11 @@ ENDS = {"linuxcnc": "G0 Z5|M2", "fanuc": "G0 Z5.|M30|%", "siemens": "G0 Z5|M30",
 SUBPROGRAMS = """o100 sub|M8|o100 endsub|o110 sub|G91|o110 endsub|o120 sub|F123|G18|o120 endsub|o130 sub|G0 X9 Y9|
     o130 endsub|o140 sub|G20|o140 endsub""".replace("\n", "").split("|")
 
-# Curve words: of which controls, and as what their blocks are said.
-CURVES = {"linuxcnc": ["G5", "G5", "G5.1", "G5.2"], "grblhal": ["G5"], "marlin": ["G5"], "fanuc": ["G6.2"],
-          "siemens": ["POLY"], "itnc530": ["SPL"]}
+# Curve words: of which controls, and as what their blocks are said. "weighted": with uneven weights, or of a
+# degree above the third.
+CURVES = {"linuxcnc": ["G5", "G5", "G5.1", "G5.2", "weighted G5.2", "weighted G5.2"], "grblhal": ["G5"], "marlin": ["G5"],
+          "fanuc": ["G6.2", "weighted G6.2"], "siemens": ["POLY", "weighted POLY"],
+          "siemens-bspline": ["BSPLINE", "weighted BSPLINE", "weighted BSPLINE"], "itnc530": ["SPL"]}
 
 STYLES = ("contours", "raster", "waterlines", "adaptive", "engraving", "plasma", "laser", "printer", "drilling", "finishing")
 
@@ -234,7 +237,8 @@ class Programs:
         here = self.spoken
         if here is None or len(ends) < count or min(math.dist(a, b) for a, b in zip([here, *ends], ends)) < 0.02:
             return 0
-        if word[:2] == "G5" and any(abs(p[2] - here[2]) > 1e-9 for p in ends):
+        in_xy = "G5" in word
+        if in_xy and any(abs(p[2] - here[2]) > 1e-9 for p in ends):
             return 0
         kink = chance.choice([0.0, 0.01, 0.05])
         number = lambda x: float(self.number(x)) * (25.4 if self.inch else 1)  # noqa: E731
@@ -244,7 +248,7 @@ class Programs:
             after = chain[min(at + 2 + n, len(chain) - 1)][0]
             legs = [[(q - p) / 6 * (1 + chance.uniform(-kink, kink)) + chance.uniform(-kink, kink) * 0.1 * math.dist(here, end)
                      for p, q in pair] for pair in (zip(before, end), zip(here, after))]
-            if word[:2] == "G5":
+            if in_xy:
                 legs[0][2] = legs[1][2] = 0.0
             pieces.append((here, tuple(p + v for p, v in zip(here, legs[0])), tuple(p - v for p, v in zip(end, legs[1])), end))
             before, here = here, end
@@ -256,6 +260,8 @@ class Programs:
 
     def curve_words(self, word, pieces):
         n, blank = self.number, self.blank
+        if word[:8] == "weighted" or word == "BSPLINE":
+            return self.weighted_words(word, pieces)
         xy = lambda p: [f"X{n(p[0])}", f"Y{n(p[1])}"]  # noqa: E731
         if word == "G5":
             lines = []
@@ -294,6 +300,68 @@ class Programs:
             else:
                 lines.append("SPL " + " ".join(w[0] for w in words) + "".join(w[1] for w in words))
         return lines
+
+    def weighted_words(self, word, pieces):
+        """The control points of the pieces, with other weights, orders and knots."""
+        chance, n, blank = self.random, self.number, self.blank
+        # The nearer the control points are to a straight line, the less the weights matter.
+        spread = chance.choice([0.0, 0.1, 0.3, 0.6])
+        places = [pieces[0][0]]
+        for a, b, c, d in pieces:
+            size = spread * math.dist(a, d)
+            places += [(p[0] + chance.uniform(-size, size), p[1] + chance.uniform(-size, size), p[2]) for p in (b, c)] + [d]
+        decimals = chance.choice([2, 3, 4])
+        weight = lambda: f"{chance.uniform(0.4, 2.5):.{decimals}f}"  # noqa: E731
+        xyz = lambda p: [name + n(x) for name, x in zip("XYZ", p)]  # noqa: E731
+        if word == "weighted G5.2":
+            order = chance.choice([k for k in (2, 3, 3, 4, 5, 6) if k <= len(places)])
+            lines = [blank.join([*xyz(p)[:2], f"P{weight()}"]) for p in places[1:]]
+            if chance.random() < 0.5:
+                return [f"G5.2{blank}L{order}", *lines, "G5.3"]
+            return [f"G5.2{blank}{lines[0]}{blank}L{order}", *lines[1:], "G5.3"]
+        if word == "weighted G6.2":
+            order = chance.choice([2, 3, 4, 4])
+            most = chance.choice([1, order - 1])  # how often an inner knot stands at most
+            knots, at = [0] * order, 0
+            while len(knots) < len(places):
+                at += chance.choice([1, 2, 5])
+                knots += [at] * min(most, len(places) - len(knots))
+            knots += [at + chance.choice([1, 2, 5])] * order
+            lines = [blank.join([f"K{k}.", *xyz(p), f"R{weight()}"]) for k, p in zip(knots, places)]
+            return [f"G06.2{blank}P{order}{blank}{lines[0]}", *lines[1:]] + [f"K{knots[-1]}."] * order
+        if word.endswith("BSPLINE"):
+            lengths = [f"{chance.uniform(0.5, 3):.2f}" for _ in places[3:]] + ["0", "0"]
+            weights = [f" PW={weight()}" if word[:8] == "weighted" else "" for _ in lengths]
+            lines = [" ".join([*xyz(p), f"PL={length}"]) + w for p, length, w in zip(places[1:], lengths, weights)]
+            return [f"BSPLINE SD=3 {lines[0]}", *lines[1:]]
+        return [("POLY " if k == 0 else "") + self.poly_words(places[3 * k:3 * k + 4], weight) for k in range(len(pieces))]
+
+    def poly_words(self, piece, weight):
+        """A Bezier curve of degree 3 to 5, with weights or without, by its polynomials."""
+        chance, unit = self.random, 25.4 if self.inch else 1
+        degree = chance.choice([3, 4, 5])
+        control = [list(p) for p in piece]
+        while len(control) <= degree:
+            k = len(control)
+            control = [[(i * p + (k - i) * q) / k for p, q in zip(control[max(i - 1, 0)], control[min(i, k - 1)])]
+                       for i in range(k + 1)]
+        size = math.dist(piece[0], piece[3]) if degree > 3 else 0.0
+        control[1:-1] = [[p[0] + chance.uniform(-0.2, 0.2) * size, p[1] + chance.uniform(-0.2, 0.2) * size, p[2]]
+                         for p in control[1:-1]]
+        weights = [1.0] + [float(weight()) if degree == 3 or chance.random() < 0.6 else 1.0 for _ in range(degree)]
+        length = chance.choice([1, 1, 0.5, 2, 3])
+        chains = [[w * p[axis] for w, p in zip(weights, control)] for axis in range(3)] + [weights]
+        # a_k of each: k-th differences of the Bernstein coefficients.
+        chains = [[math.comb(degree, k) * math.fsum((-1) ** (k - i) * math.comb(k, i) * b[i] for i in range(k + 1)) / length ** k
+                   for k in range(degree + 1)] for b in chains]
+        words = []
+        for axis, a in enumerate(chains[:3]):
+            if axis == 2 and all(p[2] == piece[0][2] for p in piece) and chance.random() < 0.5:
+                continue
+            words.append(f"PO[{'XYZ'[axis]}]=({','.join([self.number(piece[3][axis])] + [f'{x / unit:.6f}' for x in a[2:]])})")
+        if set(weights) != {1.0}:
+            words.append(f"PO[]=({','.join([str(weights[-1])] + [f'{x:.6f}' for x in chains[3][2:]])})")
+        return " ".join(words + ([f"PL={length}"] if length != 1 else []))
 
     def between_chains(self, style):
         if style == "plasma" and not self.klartext:

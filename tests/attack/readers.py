@@ -138,7 +138,7 @@ class PlainReader(Reader):
         self.repeats = kind not in ("klipper", "marlin")
         self.parameters, self.nurbs, self.cycle = {}, None, False
         self.onwards = None  # of the last G5: the way in which it arrived
-        self.even = None  # of G5.2: its points, whether they are of weight 1, order, words
+        self.even = None  # of G5.2: its points, their weights, whether they are a curve, order, words
         self.begun = False
         self.offset_code = None
         # Of those that want it around curves: G05 P.
@@ -400,10 +400,10 @@ class PlainReader(Reader):
             return True
         elif code == "G5.2":
             self.motion, self.cycle, self.onwards = code, True, None
-            weight = values.get("P", 1.0)
-            self.even = [[tuple(self.place)], weight == 1.0, values.get("L", 3.0), raw]
-            if values.keys() & set("XY"):
-                self.even_line({"P": weight, **{name: x for name, x in values.items() if name not in "LF"}}, [], "")
+            has_point = bool(values.keys() & set("XY"))
+            self.even = [[tuple(self.place)], [1.0], has_point or values.get("P", 1.0) == 1.0, values.get("L", 3.0), raw]
+            if has_point:
+                self.even_line({name: x for name, x in values.items() if name not in "LF"}, [], "")
             return True
         elif code == "G5.3":
             self.motion, self.cycle = code, True
@@ -505,22 +505,23 @@ class PlainReader(Reader):
 
     def even_line(self, values, codes, raw):
         """A control point of G5.2, or what is none."""
-        points, good, order, text = self.even
-        good = good and not codes and values.keys() - {"N"} == set("XYP") and values["P"] == 1.0
+        points, weights, good, order, text = self.even
+        good = good and not codes and values.keys() - {"N"} == set("XYP") and values["P"] > 0
         if good:
             points.append((self.length(values["X"]), self.length(values["Y"]), points[-1][2]))
-        self.even = [points, good and self.absolute and self.plane == 17, order, f"{text} {raw}"]
+            weights.append(values["P"])
+        self.even = [points, weights, good and self.absolute and self.plane == 17, order, f"{text} {raw}"]
 
     def even_end(self):
-        points, good, order, text = self.even or [[], False, 0, ""]
+        points, weights, good, order, text = self.even or [[], [], False, 0, ""]
         self.even = None
-        order = int(order) if order in (2, 3, 4) else 0
+        order = int(order) if order in (2, 3, 4, 5, 6) else 0
         if not good or not order or len(points) < order:
             self.event(f"{text} G5.3")
             return self.act("moves")
         spans = len(points) - order + 1
         knots = [0.0] * order + [float(n) for n in range(1, spans)] + [float(spans)] * order
-        self.move(paths.nurbs_points(order, points, [1.0] * len(points), knots), False, text)
+        self.move(paths.nurbs_points(order, points, weights, knots), False, text)
 
     def nurbs_line(self, values):
         control, weights, knots, order, raw = self.nurbs
@@ -538,4 +539,8 @@ class PlainReader(Reader):
         if len(control) < order or any(abs(a - b) > 1e-6 for a, b in zip(control[0], self.place)) or \
                 sorted(knots) != knots or knots[0] != knots[order - 1] or knots[-1] != knots[-order]:
             self.event("refused curve")
+        if min(weights) <= 0:
+            self.event(f"refused curve {raw}")
+            self.place = list(control[-1])
+            return
         self.move(paths.nurbs_points(order, control, weights, knots), False, raw)

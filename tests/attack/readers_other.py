@@ -14,7 +14,7 @@ class SiemensReader(PlainReader):
     PATH = {"G60", "G64", "G641", "G642", "G643", "G644", "G645"}
     ON = {"COMPON": "compressor", "COMPCURV": "compressor", "COMPCAD": "compressor", "TRAORI": "transformation",
           "ROT": "rotation", "AROT": "rotation", "SCALE": "scaling", "MIRROR": "mirror"}
-    PIECE = re.compile(rf"(PO\[[XYZ]?\]|PL|CR|[A-Z])=({ARGUMENTS}|[A-Z]+{ARGUMENTS}|[A-Z0-9_.+*/-]+)|([A-Z])({NUMBER})"
+    PIECE = re.compile(rf"(PO\[[XYZ]?\]|PL|PW|SD|CR|[A-Z])=({ARGUMENTS}|[A-Z]+{ARGUMENTS}|[A-Z0-9_.+*/-]+)|([A-Z])({NUMBER})"
                        rf"|([A-Z_][A-Z_][A-Z0-9_]*)({ARGUMENTS})?")
 
     def __init__(self, text, effect="nothing", inch=None, kind="siemens"):
@@ -23,10 +23,14 @@ class SiemensReader(PlainReader):
         self.labels = set(re.findall(r"GOTO[FBC]?\s+([A-Z0-9_]+)", text.upper()))
         self.any_call = False
         self.modal_call = False
+        self.spline = None  # of BSPLINE: points, weights, lengths of spans, words
+        self.lines.append("")  # ends a curve at the end
 
     def follow(self, line):
         body = line.split(";")[0].strip()
         upper = body.upper()
+        if self.spline is not None and not re.search(r"\bPL\s*=", upper):
+            self.spline_end()
         if not upper or upper.startswith("%"):
             return
         if upper.startswith("/"):
@@ -81,6 +85,8 @@ class SiemensReader(PlainReader):
                     values[name] = number
             else:
                 names.append((found.group(5), found.group(6)))
+        if names or codes:
+            self.spline_end()
         if "L" in values or "T" in values and isinstance(values["T"], str) and not values["T"]:
             raise Unknown
         for name, arguments in names:
@@ -116,6 +122,11 @@ class SiemensReader(PlainReader):
                 continue
             if name == "POLY":
                 self.motion = "POLY"
+                continue
+            if name == "BSPLINE":
+                self.spline_end()
+                self.motion = "BSPLINE"
+                self.spline = ([tuple(self.place)], [1.0], [], [])
                 continue
             if name not in self.KEEPS:
                 raise Unknown
@@ -167,7 +178,7 @@ class SiemensReader(PlainReader):
             values = {k: v for k, v in values.items() if k not in strings}
             self.place = self.end_of(values)
         elif not taken and any(k in values for k in ("X", "Y", "Z", "I", "J", "K", "PO[X]", "PO[Y]", "PO[Z]", "CR",
-                                                     "A", "B", "C", "U", "V", "W")):
+                                                     "A", "B", "C", "U", "V", "W", *(["PL"] if self.spline else []))):
             self.siemens_go(values, raw)
         for code in codes:
             if code in ("M0", "M1"):
@@ -176,7 +187,41 @@ class SiemensReader(PlainReader):
                 self.event(f"{code} {self.state()}")
                 self.ended = True
 
+    def spline_line(self, values, raw):
+        """A control point of BSPLINE; PL is the length of the span that it ends."""
+        if self.spline is None or not self.absolute or values.keys() - set("XYZFN") - {"PL", "PW", "SD"} or \
+                "F" in values and self.spline[2] or not {type(x) for x in values.values()} <= {float}:
+            self.spline_end()
+            raise Unknown
+        points, weights, lengths, texts = self.spline
+        last = list(points[-1])
+        for n, letter in enumerate("XYZ"):
+            if letter in values:
+                last[n] = self.length(values[letter])
+        points.append(tuple(last))
+        weights.append(values.get("PW", 1.0))
+        # No length for another degree: it is refused.
+        lengths.append(values["PL"] if values.get("SD", 3.0) == 3.0 else -1.0)
+        texts.append(raw)
+
+    def spline_end(self):
+        if self.spline is None:
+            return
+        points, weights, lengths, texts = self.spline
+        self.spline = None
+        clamped = len(lengths) >= 3 and not any(lengths[-2:]) and lengths[0] and lengths[-3] and min(lengths) >= 0
+        if not clamped or min(weights) <= 0:
+            self.event(f"refused {' '.join(texts)}")
+            self.place = list(points[-1])
+            return
+        knots = [0.0] * 4
+        for length in lengths[:-2]:
+            knots.append(knots[-1] + length)
+        self.move(paths.nurbs_points(4, points, weights, knots + knots[-1:] * 3), False, " ".join(texts))
+
     def siemens_go(self, values, raw):
+        if self.motion == "BSPLINE":
+            return self.spline_line(values, raw)
         if self.motion != "POLY":
             if any(k.startswith("PO") for k in values):
                 raise Unknown  # a straight line, without an alarm
@@ -184,24 +229,37 @@ class SiemensReader(PlainReader):
                 values["R"] = values.pop("CR")
             return self.go(values, raw)
         length = values.get("PL", 1.0)
-        end, control = list(self.place), [[], [], [], []]
-        for n, letter in enumerate("XYZ"):
-            a0 = self.place[n]
-            if f"PO[{letter}]" in values:
-                numbers = [self.length(float(t)) for t in values[f"PO[{letter}]"].strip("()").split(",")]
-                last, a2, a3 = (numbers + [0, 0])[:3]
-                if len(numbers) > 3:
-                    raise Unknown
-            else:
-                last, a2, a3 = self.end_of({k: v for k, v in values.items() if k == letter})[n], 0, 0
-            a2, a3 = a2 * length ** 2, a3 * length ** 3
-            a1 = last - a0 - a2 - a3
-            end[n] = last
-            for chain, value in zip(control, (a0, a0 + a1 / 3, a0 + (2 * a1 + a2) / 3, last)):
-                chain.append(value)
-        if "PO[]" in values or not self.absolute:
+        try:
+            numbers = {name: [float(t) for t in str(text).strip("()").split(",")] for name, text in values.items()
+                       if name[:3] == "PO["}
+        except ValueError:
+            raise Unknown from None
+        if not self.absolute or any(len(a) > 5 for a in numbers.values()):
             raise Unknown
-        self.move(paths.cubic_points(*control), False, raw)
+
+        def polynomial(begin, end, others):
+            """In p / PL: a0, what is left for a1, a2 .."""
+            higher = [a * length ** k for k, a in enumerate(others, 2)]
+            return [begin, end - begin - sum(higher), *higher]
+
+        weight = numbers.get("PO[]", [1.0])
+        denominator, axes, end = polynomial(1.0, weight[0], weight[1:]), [], list(self.place)
+        for n, letter in enumerate("XYZ"):
+            if f"PO[{letter}]" in numbers:
+                last, *others = (self.length(a) for a in numbers[f"PO[{letter}]"])
+            elif letter in values:
+                last, others = self.end_of({letter: values[letter]})[n], []
+            else:  # it does not move
+                axes.append([end[n] * b for b in denominator])
+                continue
+            axes.append(polynomial(end[n], last * weight[0], others))
+            end[n] = last
+        points = paths.polynomial_points(axes, denominator)
+        if points is None:
+            self.event(f"refused {raw}")
+            self.place = end
+            return
+        self.move([*points[:-1], tuple(end)], False, raw)
 
 
 class KlartextReader(Reader):
