@@ -9,6 +9,7 @@
 #include "gcode/control/control.h"
 #include "gcode/reading/foreign_file.h"
 #include "gcode/rs274/plain_words.h"
+#include "gcode/siemens/names.h"
 #include "gcode/text/characters.h"
 #include "gcode/text/line_cursor.h"
 
@@ -33,6 +34,44 @@ constexpr std::array kFamilies = {
     SourceFamily{SourceKind::kHeidenhain, "heidenhain", "Heidenhain Klartext", "heidenhain",
                  Language::kKlartext, 0},
 };
+
+// Bytes that are looked at before they are given back: a long program is not held for its marks.
+constexpr std::size_t kAtOnce = std::size_t{1} << 23;
+
+// Behind a line feed where there is one, so that lines are whole.
+std::size_t end_of_part(std::string_view text, std::size_t begin) {
+  if (text.size() - begin <= kAtOnce) return text.size();
+  const std::size_t feed = text.rfind('\n', begin + kAtOnce);
+  return feed == std::string_view::npos || feed < begin ? text.size() : feed + 1;
+}
+
+// Calls `use` for each part of the text until it says false.
+template <typename Use>
+void for_each_part(const SourceText& source, const Use& use) {
+  const std::size_t size = source.text().size();
+  bool goes_on = true;
+  for (std::size_t begin = 0; begin < size && goes_on;) {
+    const std::size_t end = end_of_part(source.text(), begin);
+    const SourceSpan part{static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)};
+    goes_on = use(part);
+    source.release_pages(part);
+    begin = end;
+  }
+}
+
+bool has_siemens_names(const SourceText& source) {
+  bool found = false;
+  for_each_part(source, [&](SourceSpan part) {
+    const std::string_view text = source.text(part);
+    LineCursor lines(text);
+    while (const auto line = lines.next()) {
+      found = has_siemens_name(text.substr(line->begin, line->text_end - line->begin));
+      if (found) return false;
+    }
+    return true;
+  });
+  return found;
+}
 
 const SourceFamily* family_of(SourceKind kind) {
   const auto* found = std::ranges::find(kFamilies, kind, &SourceFamily::kind);
@@ -79,7 +118,8 @@ std::optional<Language> source_language(const SourceText& source, SourceKind kin
   // reading copies what it does not know.
   if (marks.empty()) {
     const bool klartext = target == Language::kKlartext && !plain_beginning(source);
-    return klartext ? Language::kKlartext : Language::kRs274;
+    const bool siemens = target == Language::kSiemens && has_siemens_names(source);
+    return klartext ? Language::kKlartext : siemens ? Language::kSiemens : Language::kRs274;
   }
   if (marks.size() == 1) return marks.front().language;
   found.push_back(
@@ -181,16 +221,6 @@ bool may_be_mark(std::string_view line) {
   return is_letter_of_mark(char_at(line, at)) != 0;
 }
 
-// Bytes that are looked at before they are given back: a long program is not held for its marks.
-constexpr std::size_t kAtOnce = std::size_t{1} << 23;
-
-// Behind a line feed where there is one, so that lines are whole.
-std::size_t end_of_part(std::string_view text, std::size_t begin) {
-  if (text.size() - begin <= kAtOnce) return text.size();
-  const std::size_t feed = text.rfind('\n', begin + kAtOnce);
-  return feed == std::string_view::npos || feed < begin ? text.size() : feed + 1;
-}
-
 std::size_t begin_of_line(std::string_view text, std::size_t at) {
   while (at > 0 && text[at - 1] != '\n' && text[at - 1] != '\r') --at;
   return at;
@@ -241,14 +271,10 @@ std::optional<LanguageEvidence> language_of_line(std::string_view line) {
 
 std::vector<LanguageMark> language_marks(const SourceText& source) {
   std::vector<LanguageMark> marks;
-  const std::size_t size = source.text().size();
-  for (std::size_t begin = 0; begin < size;) {
-    const std::size_t end = end_of_part(source.text(), begin);
-    const SourceSpan part{static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)};
+  for_each_part(source, [&](SourceSpan part) {
     add_marks_of(source, part, marks);
-    source.release_pages(part);
-    begin = end;
-  }
+    return true;
+  });
   return marks;
 }
 

@@ -46,7 +46,8 @@ struct SourceFamily {
 
 // The language in which to read this text. With kAuto: that of its certain marks, which only one
 // language has; without any, Klartext where the target reads that and the text does
-// not begin with plain words (gcode/rs274/plain_words.h), else RS-274. Nothing, and an
+// not begin with plain words (gcode/rs274/plain_words.h), that of Siemens where the target reads
+// that and a line has one of its names (has_siemens_name), else RS-274. Nothing, and an
 // error in `found`, when
 //   not-a-program: the file is of another kind (gcode/reading/foreign_file.h);
 //   source-ambiguous: the text has certain marks of two languages;

@@ -1,6 +1,7 @@
 #include "gcode/siemens/names.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <iterator>
 
@@ -285,6 +286,13 @@ NamedEffect apply_names(std::string_view text, const BlockWords& words, SiemensV
 
 namespace {
 
+// Of the curves that are written into programs of plain words.
+constexpr std::array<std::string_view, 6> kNamesBesidePlainWords = {"POLY",    "PO", "PL",
+                                                                    "BSPLINE", "SD", "PW"};
+
+// Of values, no words of a block: the radius of an arc, places in either mode.
+constexpr std::array<std::string_view, 3> kValueNames = {"CR", "AC", "IC"};
+
 // The place behind a string, brackets or a value that starts here; the next character otherwise.
 std::size_t after_part(std::string_view text, std::size_t at) {
   if (text[at] == '"') {
@@ -298,6 +306,25 @@ std::size_t after_part(std::string_view text, std::size_t at) {
 }
 
 }  // namespace
+
+bool has_siemens_name(std::string_view line) {
+  for (std::size_t at = 0; at < line.size() && line[at] != ';';) {
+    std::size_t end = at;
+    while (end < line.size() && is_letter(line[end])) ++end;
+    const std::size_t letters = end - at;
+    if (letters > 1) {
+      while (end < line.size() && is_name_character(line[end])) ++end;
+      const std::string name = in_capitals(line.substr(at, end - at));
+      const bool plain = std::ranges::count(kNamesBesidePlainWords, name) > 0;
+      if (!plain && (std::ranges::count(kValueNames, name) > 0 || is_known_siemens_name(name))) {
+        return true;
+      }
+    }
+    const std::size_t close = line[at] == '<' ? line.find('>', at) : std::string_view::npos;
+    at = letters > 0 ? end : close != std::string_view::npos ? close : after_part(line, at);
+  }
+  return false;
+}
 
 // The name is the last one before a comma, an = or the end: words of the type stand before it.
 void add_declared_names(std::string_view declaration, SiemensVariables& variables) {

@@ -14,6 +14,7 @@
 #include "postproc/commands/certificate_file.h"
 #include "postproc/commands/commands.h"
 #include "postproc/commands/files.h"
+#include "postproc/convert/conversion.h"
 #include "postproc/proof/certificate.h"
 #include "postproc/proof/verification.h"
 #include "postproc/report/html_report.h"
@@ -44,10 +45,8 @@ std::optional<gcode::Language> language_before(const gcode::SourceText& old_sour
                                                const VerifyCommand& command) {
   const auto target = language_of_target(command);
   if (!target) return std::nullopt;
-  gcode::Diagnostics uncertain;
-  const auto before = gcode::source_language(old_source, command.source, std::nullopt, uncertain);
-  const auto after =
-      gcode::source_language(new_source, gcode::SourceKind::kAuto, std::nullopt, uncertain);
+  const auto before = language_before_target(old_source, command.source, *target);
+  const auto after = language_before_target(new_source, gcode::SourceKind::kAuto, *target);
   return before != target && after == target ? before : std::nullopt;
 }
 

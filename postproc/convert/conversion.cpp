@@ -179,11 +179,18 @@ std::optional<gcode::Language> language_read(const gcode::SourceText& source,
   return std::nullopt;
 }
 
+std::optional<gcode::Language> language_before_target(const gcode::SourceText& source,
+                                                      gcode::SourceKind kind,
+                                                      gcode::Language target) {
+  const auto fallback = target == gcode::Language::kSiemens ? std::optional(target) : std::nullopt;
+  gcode::Diagnostics uncertain;
+  return gcode::source_language(source, kind, fallback, uncertain);
+}
+
 std::optional<gcode::Language> language_to_translate(const gcode::SourceText& source,
                                                      const SmoothOptions& options) {
   if (!options.convert) return std::nullopt;
-  gcode::Diagnostics uncertain;
-  const auto language = gcode::source_language(source, options.source, std::nullopt, uncertain);
+  const auto language = language_before_target(source, options.source, options.target->language);
   return language == options.target->language ? std::nullopt : language;
 }
 

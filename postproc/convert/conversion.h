@@ -28,8 +28,15 @@ namespace batten::postproc {
                                                            const SmoothOptions& options,
                                                            gcode::Diagnostics& found);
 
-// With --convert: the language of the program, where the target reads another one. A text without
-// certain marks of a language counts as plain words (RS-274) here. Nothing where nothing is to be
+// The language of a program that may be for another control than the target. A text without marks
+// counts as plain words (RS-274) here, unless the target is one for Siemens words and the text has
+// such names. Nothing where it is not certain.
+[[nodiscard]] std::optional<gcode::Language> language_before_target(const gcode::SourceText& source,
+                                                                    gcode::SourceKind kind,
+                                                                    gcode::Language target);
+
+// With --convert: the language of the program (language_before_target), where the target reads
+// another one. Nothing where nothing is to be
 // translated.
 [[nodiscard]] std::optional<gcode::Language> language_to_translate(const gcode::SourceText& source,
                                                                    const SmoothOptions& options);

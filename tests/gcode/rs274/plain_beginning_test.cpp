@@ -43,5 +43,27 @@ TEST(PlainBeginning, DecidesForTargetsThatReadKlartext) {
             Language::kKlartext);
 }
 
+// A text without marks is for a Siemens control where that is the target and it says such names.
+// What Batten writes for one into plain words says nothing of them.
+TEST(SiemensNames, DecideForTargetsThatReadThem) {
+  const auto language = [](const std::string& text, Language target) {
+    Diagnostics found;
+    return source_language(SourceText("test", text), SourceKind::kAuto, target, found);
+  };
+  for (const char* line :
+       {"N10 G40 G17 G710 G94 G90 G60 G601 FNORM", "TRANS X10", "MSG(\"face\")", "cycle832(0.01)",
+        "G2 X1 Y1 CR=5", "X=IC(5)", "N20 MSG (\"x\") ; y", "T=\"BALL\" SUPA D1"}) {
+    const std::string text = "G90\nG1 X1 F100\n" + std::string(line) + "\nX2\n";
+    EXPECT_EQ(language(text, Language::kSiemens), Language::kSiemens) << line;
+    EXPECT_EQ(language(text, Language::kRs274), Language::kRs274) << line;
+  }
+  for (const char* line :
+       {"(MSG, TRANS X10)", "; TRANS X10", "G1X1Y2Z3F100", "POLY X1 PO[X]=(1,2,3) F900",
+        "BSPLINE SD=3 X1 PL=2", "X1 PW=2", "#<trans>=5", "O100 CALL", "IF [#1 EQ 2] GOTO 10"}) {
+    const std::string text = "G90\nG1 X1 F100\n" + std::string(line) + "\nX2\n";
+    EXPECT_EQ(language(text, Language::kSiemens), Language::kRs274) << line;
+  }
+}
+
 }  // namespace
 }  // namespace batten::gcode
