@@ -219,7 +219,7 @@ class Interpreter {
     if (block.block_delete) {
       read_uncertain(block, reason::kBlockDelete);
     } else if (!has_command(index)) {
-      read_uncertain(block, reason::kNotUnderstood);
+      read_uncertain(block, reason::kNoCommand);
     } else {
       read_words_or_text(block);
     }

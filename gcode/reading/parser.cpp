@@ -34,6 +34,15 @@ constexpr std::string_view kUnclosedComment = "unclosed-comment";
 // a program, and its words would take many times its size of memory.
 constexpr std::uint32_t kLongestLine = 1U << 20;
 
+// $PART.MIN%: Okuma's line in front of a program that is sent. It is for the transfer alone.
+bool is_okuma_file_name(std::string_view line) {
+  if (line.size() < 3 || line.front() != '$' || line.back() != '%') return false;
+  const std::string_view name = line.substr(1, line.size() - 2);
+  return std::ranges::all_of(name,
+                             [](char c) { return is_name_character(c) || c == '-' || c == '.'; }) &&
+         std::ranges::count(name, '.') == 1;
+}
+
 // One pass over the source, line by line.
 class Parser {
  public:
@@ -127,6 +136,8 @@ class Parser {
     } else if (content.size() > 0 && text_[content.begin] == '%') {
       block.opacity = ParseStatus::kProgramMark;
       note_foreign_language(content);
+    } else if (!carry_.words_seen && is_okuma_file_name(program_.source.text(content))) {
+      block.opacity = ParseStatus::kProgramMark;
     } else if (content.size() > kLongestLine) {
       make_unreadable(block, content, "a line of more than 1 MiB");
       carry_.words_seen = true;

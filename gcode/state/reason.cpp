@@ -16,6 +16,10 @@ constexpr Explanation kExplanations[] = {
     {kNotUnderstood,
      "The block holds words that this reader does not know, or that a control would refuse.",
      "See the warnings: they name the words."},
+    {kNoCommand,
+     "The block has no G, M or T word: most builds of this control leave such blocks out.",
+     "Let the post write the G word in each block (G1 X1); for controls that repeat the motion, "
+     "take another target."},
     {kExpression,
      "A word's value is an expression or a parameter that is not certain here (X[#1+2], X#5).",
      "Let the CAM system write plain numbers, or assign the variables (#1=5) in front of all "

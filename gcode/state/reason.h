@@ -10,6 +10,7 @@ namespace batten::gcode::reason {
 
 // --- a block that cannot be part of a run -------------------------------------------------
 inline constexpr std::string_view kNotUnderstood = "not-understood";
+inline constexpr std::string_view kNoCommand = "no-command";
 inline constexpr std::string_view kExpression = "expression";
 inline constexpr std::string_view kImpliedDecimals = "implied-decimals";
 inline constexpr std::string_view kAssignment = "parameter-assignment";

@@ -324,7 +324,7 @@ TEST(BlocksWithoutACommand, MayBeLeftOutWhereEachBlockIsACommand) {
   options.needs_commands = true;
   const Interpreted commands(text, options);
   EXPECT_EQ(commands.motion_of_line(4), nullptr);
-  EXPECT_EQ(commands.line(4).barrier, reason::kNotUnderstood);
+  EXPECT_EQ(commands.line(4).barrier, reason::kNoCommand);
   ASSERT_NE(commands.motion_of_line(5), nullptr);
   EXPECT_FALSE(commands.motion_of_line(5)->start_known);
   EXPECT_EQ(commands.state_after_line(5).feed, 100.0);

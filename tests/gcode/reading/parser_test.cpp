@@ -211,6 +211,15 @@ TEST(ProgramMarks, ASingleOneAtTheEndEndsTheProgram) {
   EXPECT_EQ(blocks_of("X1\nM30\n%\n\n"), (Blocks{"words: X1", "words: M30", "mark", "words"}));
 }
 
+// What is sent to an Okuma control has the name of the file in front; $ lines of grbl are others.
+TEST(ProgramMarks, AreFileNamesOfOkuma) {
+  EXPECT_EQ(blocks_of("$PART-1.MIN%\nO1\nX1\n"), (Blocks{"mark", "mark: O1", "words: X1"}));
+  EXPECT_EQ(blocks_of("X1\n$A.MIN%\n").back(), blocks_of("X1\n$H\n").back());
+  for (const char* line : {"$H", "$J=G91 X1", "$10=%", "$100%", "$A.B.C%"}) {
+    EXPECT_NE(blocks_of(std::string(line) + "\n").front(), "mark") << line;
+  }
+}
+
 TEST(ProgramMarks, WordsBeforeTheFirstAreDoubtful) {
   const Parsed read = parsed("(c)\nG20\n%\nX1\n");
   EXPECT_EQ(blocks_of("(c)\nG20\n%\nX1\n"),
