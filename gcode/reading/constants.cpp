@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -11,6 +12,7 @@
 
 #include "gcode/interpreter/program_flow.h"
 #include "gcode/siemens/block.h"
+#include "gcode/siemens/names.h"
 #include "gcode/state/block_words.h"
 #include "gcode/text/characters.h"
 #include "gcode/text/number_format.h"
@@ -57,7 +59,7 @@ class Reader {
     const char c = upper(next());
     return language_ == Language::kRs274      ? c == '#'
            : language_ == Language::kKlartext ? c == 'Q'
-                                              : is_letter(c);
+                                              : is_letter(c) || c == '_';
   }
   // Whether any value so far was that of a variable.
   [[nodiscard]] bool uses_variable() const { return uses_variable_; }
@@ -367,8 +369,16 @@ class ConstantFinder {
     const bool silent = std::ranges::all_of(names, [](const SiemensName& each) {
       return kSilent.find(" " + each.name + " ") != std::string_view::npos;
     });
-    if (!silent) return set_declared(block);
-    if (!block.block_delete) compute_words(block);
+    if (silent) {
+      if (!block.block_delete) compute_words(block);
+      return forget_behind(block);
+    }
+    // Tools and cycles of the control see no variables that the program has declared.
+    const bool known = std::ranges::all_of(names, [](const SiemensName& each) {
+      return is_known_siemens_name(each.name) || each.name == "T";
+    });
+    if (!known || names.empty()) return set_declared(block);
+    forget_numbered();
     forget_behind(block);
   }
 
@@ -383,17 +393,18 @@ class ConstantFinder {
     do {
       const auto name = reader.name();
       if (!name) return values_.clear();
+      declared_.insert(*name);
       set(*name, reader.take('=') ? reader.sum() : std::nullopt);
     } while (reader.take(','));
     if (reader.next() != '\0') values_.clear();
   }
 
-  // NAME=5 of a name whose value was known; anything else may set any.
+  // NAME=5 of a name that was declared; anything else may set any.
   void set_declared(const Block& block) {
     const std::string text = said_in(block);
     Reader reader(text, values_, program_);
     const auto name = reader.name();
-    const bool known = name && values_.contains(*name) && reader.take('=');
+    const bool known = name && declared_.contains(*name) && reader.take('=');
     const auto value = known ? reader.sum() : std::nullopt;
     if (!value || reader.next() != '\0') return values_.clear();
     set(*name, block.block_delete ? std::nullopt : value);
@@ -415,14 +426,17 @@ class ConstantFinder {
       ended_ |= row.group == CodeGroup::kModalMacro;
       forgets_numbered |= !is_g && !keeps_numbered(row);
     }
-    if (forgets_numbered) {
-      std::erase_if(values_, [](const auto& each) { return is_numbered(each.first); });
-    }
+    if (forgets_numbered) forget_numbered();
+  }
+
+  void forget_numbered() {
+    std::erase_if(values_, [](const auto& each) { return is_numbered(each.first); });
   }
 
   Program& program_;
   ProgramFlow flow_;
   Values values_;
+  std::set<Name> declared_;  // by DEF REAL
   bool ended_ = false;
 };
 

@@ -11,14 +11,12 @@ namespace batten::gcode {
 //
 //   - each variable was assigned above, in a block that is certainly executed; no label that is
 //     jumped to, body of a loop or subprogram, call, or line that is not understood is in between;
-//   - it is a name of LinuxCNC's that is no global one (#<name>, not #<_name>), a # number from 1
-//   to
+//   - it is a name of LinuxCNC's that is no global one (#<name>, not #<_name>), a # number from 1 to
 //     999 (those above are windows into the control on some), an R parameter, what DEF REAL
-//     declares, Q0 to Q99 or QL. Numbers are not certain behind tool changes and M words that may
-//     be a builder's: their macros may use them;
+//     declares (a name behind it may get its value), Q0 to Q99 or QL. Numbers are not certain
+//     behind tool changes, cycles and M words that may be a builder's: their macros may use them;
 //   - the expression has numbers, + - * /, signs and brackets alone. Values are doubles, computed
-//   in
-//     the order of the text as LinuxCNC does.
+//     in the order of the text as LinuxCNC does.
 //
 // Word::decimals are then as many as the value needs, six at most. A block whose words are all
 // numbers is one of ParseStatus::kNone. Linear.

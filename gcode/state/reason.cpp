@@ -134,8 +134,9 @@ constexpr Explanation kExplanations[] = {
     {kRotation, "Coordinates are rotated (G68).", "Let the CAM system turn the part."},
     {kMirror, "Coordinates are mirrored (G51.1), or may be (M21, M22).",
      "Let the CAM system mirror the part."},
-    {kExactStop, "The program asks for the exact path or for a stop at each point (G61, G61.1).",
-     "--allow exact-stop lifts it for G61; or take G61 out of the program.", true},
+    {kExactStop,
+     "The program asks for the exact path or for a stop at each point (G60, G61, G61.1).",
+     "--allow exact-stop lifts it for G61; or take G60 or G61 out of the program.", true},
     {kControlSmoothing,
      "The control fits a curve of its own here (G5.1 Q2, G5 P10000, G131, COMPCAD): its tolerance "
      "would come on top.",
