@@ -80,10 +80,7 @@ class CurveForms {
   void add() {
     const Form wanted = task_.options.output;
     const bool is_fair = curve_.method == Method::kFair;
-    const bool one_curve = is_fair || curve_.method == Method::kTube;  // no lines between corners
-    const bool curves =
-        curves_wanted(task_) && (one_curve || task_.options.method != Method::kBest);
-    if (curves) offer_curves();
+    if (curves_wanted(task_)) offer_curves();
     if (wanted == Form::kCurves) {
       make_best();
       if (has_form(Form::kCurves)) return;

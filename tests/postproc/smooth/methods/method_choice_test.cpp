@@ -231,6 +231,23 @@ TEST(BestMethod, TakesTheTubeWhereAPlanOfItIsFaster) {
   EXPECT_LT(run.time_after_s, 0.95 * fair->time_s);
 }
 
+// Six corners of 90 degrees on the machine of Ozcan 2018: rounded by two pieces each, with lines
+// between them, where the fair curve takes three times as many blocks.
+TEST(BestMethod, WritesCornersAsCurvesWhereTheTargetHasThem) {
+  Machine machine = *find_machine("high-speed");
+  set_xyz(machine, &AxisLimits::velocity, 25);
+  set_xyz(machine, &AxisLimits::acceleration, 2500);
+  set_xyz(machine, &AxisLimits::jerk, 5000);
+  SmoothOptions options = options_with(Method::kBest, "siemens", 0.1);
+  options.machine = &machine;
+  const SmoothResult result = smoothed(
+      "G71 G90 G17 G64\nG0 X0 Y0 Z0\nG1 X20 F1500\nY20\nX40\nY0\nX60\nY20\nX80\nM30\n", options);
+  const RunReport& run = rewritten_run(result);
+  EXPECT_EQ(run.method, "guo");
+  EXPECT_LE(run.blocks_out, 20U);
+  EXPECT_LT(run.time_after_s, 0.95 * run.time_before_s);
+}
+
 TEST(BestMethod, DoesNotTryTheTubeWhereNothingLimitsJerk) {
   const SmoothResult result = best_of_case("tc5b", std::numeric_limits<double>::infinity());
   for (const RunReport& run : result.runs) {
