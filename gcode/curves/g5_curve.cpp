@@ -113,15 +113,16 @@ class G5Reader {
   }
 
   // The block has a piece with these inner control points.
-  void add(std::uint32_t block, const BlockWords& words, const Point3& second,
-           const Point3& third) {
+  // `arcs`: CurveMotion::arcs; 0 of a G5.
+  void add(std::uint32_t block, const BlockWords& words, const Point3& second, const Point3& third,
+           float arcs = 0) {
     for (const char letter : std::string_view("XY")) {
       const Word* word = words.find(letter);
       if (word != nullptr) reading_.decimals = std::max<int>(reading_.decimals, word->decimals);
     }
     if (reading_.motions.empty() && words.has('F')) reading_.feed = words.find('F')->value;
     const Point3 end = end_of(words);
-    reading_.motions.push_back({block, CubicBezier{{place_, second, third, end}}});
+    reading_.motions.push_back({block, CubicBezier{{place_, second, third, end}}, arcs});
     place_ = end;
   }
 
@@ -184,6 +185,9 @@ CurveResult read_g5_chain(const Program& program, std::uint32_t first, const Cur
   return reader.finish(end - first);
 }
 
+// LinuxCNC makes 8 arcs for each of its three points; 32 of a G5, for its four.
+constexpr float kArcsOfG51 = 24;
+
 // A quadratic piece, whose one inner control point I and J give from the start.
 CurveResult read_g5_1(const Program& program, std::uint32_t first, const CurveStart& start) {
   const Block& block = program.blocks[first];
@@ -197,7 +201,7 @@ CurveResult read_g5_1(const Program& program, std::uint32_t first, const CurveSt
   G5Reader reader(start);
   const Point3 inner = reader.place() + reader.way(words, 'I', 'J');
   const Point3 end = reader.end_of(words);
-  reader.add(first, words, (reader.place() + 2 * inner) / 3, (end + 2 * inner) / 3);
+  reader.add(first, words, (reader.place() + 2 * inner) / 3, (end + 2 * inner) / 3, kArcsOfG51);
   return reader.finish(1);
 }
 

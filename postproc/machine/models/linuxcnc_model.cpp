@@ -109,7 +109,7 @@ bool becomes_lines(const PathPiece& bend, double tolerance) {
   return rise_of(bend) < tolerance;
 }
 
-// A Bezier piece for itself runs as this many arcs.
+// A cubic piece for itself runs as this many arcs.
 constexpr double kArcsPerBezier = 32;
 
 // From the start of one to the end of the other, in their directions there.

@@ -14,7 +14,7 @@ struct TimedPiece {
   int bytes = 0;            // of its block, for a control that is fed by a line; 0: not known
   bool says_speed = false;  // of the spindle: LinuxCNC begins such a block at rest
   bool goes_on = false;     // of the block of the piece before it: a curve in several pieces
-  float arcs = 0;           // that LinuxCNC makes of a piece of a curve; 0: as of a G5 for itself
+  float arcs = 0;           // that LinuxCNC makes of a piece of a curve; 0: as a G5 for itself
 };
 
 // Whether the control comes to rest at the end of every block, even where the path runs straight

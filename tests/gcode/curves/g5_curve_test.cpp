@@ -115,6 +115,7 @@ TEST(G51, IsAQuadraticPiece) {
   const auto& piece = std::get<CubicBezier>(reading->motions.at(0).piece);
   EXPECT_LT((piece.control[1] - Point3(10.0 / 3, 2, -1)).norm(), 1e-12);
   EXPECT_LT((piece.control[2] - Point3(50.0 / 3, 2, -1)).norm(), 1e-12);
+  EXPECT_EQ(reading->motions.at(0).arcs, 24) << "8 for each of its points, as LinuxCNC makes them";
   // At a quarter: 9/16 P0 + 6/16 P1 + 1/16 P2.
   EXPECT_LT((geometry::point_at(piece, 0.25) - Point3(4.375, 1.125, -1)).norm(), 1e-12);
 }
