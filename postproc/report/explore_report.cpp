@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "gcode/curves/curve_format.h"
 #include "postproc/report/smooth_report.h"
 #include "postproc/text/json_values.h"
 #include "postproc/text/words.h"
@@ -75,6 +77,22 @@ std::vector<std::string> command_of(const ExploreReport& report) {
   return words;
 }
 
+// What is said of the target's curves where all forms but them were explored.
+std::string untried_curves(const Exploration& found) {
+  const auto has = [&](Form form) {
+    return std::ranges::any_of(
+        found.rows, [form](const ExploredRow& row) { return row.options.output == form; });
+  };
+  if (!has(Form::kAuto) || has(Form::kCurves)) return {};
+  const gcode::CurveFormat* curves = found.rows.front().options.target->curves;
+  return curves == nullptr
+             ? ""
+             : fmt::format(
+                   "  {} was not tried: not every such control has it, or runs it faster; "
+                   "--output curves explores it\n",
+                   curves->name);
+}
+
 Json json_of(const ExploredFigures& figures) {
   return {{"time_s", figures.time_s},
           {"blocks", figures.blocks},
@@ -112,7 +130,8 @@ std::string explore_text(const ExploreReport& report) {
                      row.before, row.after);
     last = &row;
   }
-  text += "  * no other setting is as good in all four figures and better in one\n";
+  text += "  * no other setting is as good in all four figures and better in one\n" +
+          untried_curves(found);
   if (found.recommended) {
     const ExploredRow& row = found.rows[*found.recommended];
     text += fmt::format("\n  {:<26}", "feed");

@@ -1,8 +1,10 @@
 // `batten explore` as a user's shell sees it.
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "batten_process.h"
 
@@ -41,6 +43,11 @@ TEST(ExploreCommand, HasALineForEachSettingAndWritesNothing) {
     EXPECT_TRUE(contains(shown.out, line)) << line << "\n" << shown.out;
   }
   EXPECT_FALSE(contains(shown.out, "curves"));
+  for (const auto& [target, says] : {std::pair("linuxcnc", true), {"siemens", false}}) {
+    const auto other = expect_exit(
+        folder.batten(fmt::format("explore wave.nc --target {} --tolerance 0.01", target)), 0);
+    EXPECT_EQ(contains(other.out, "--output curves explores it"), says) << target;
+  }
   EXPECT_FALSE(folder.has("wave.smooth.nc"));
   const Json json =
       Json::parse(folder.batten("explore wave.nc --target linuxcnc --output curves --json -").out);
