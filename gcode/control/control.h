@@ -152,6 +152,9 @@ struct Control {
   ModeSet lacks = 0;
 
   const CurveFormat* curves = nullptr;  // that the control reads; nullptr: none
+  // They are tried under --output auto, too: every such control has them and runs them as they are
+  // meant, or the user says that his has the option.
+  bool curves_in_auto = false;
 
   DwellUnit dwell_unit = DwellUnit::kByPoint;
   DwellForm dwell_form = DwellForm::kUnknown;  // how a dwell is said so that its time is certain

@@ -1,4 +1,6 @@
 // Siemens Sinumerik 840D, 828D, ONE. Facts: docs/controllers/siemens.md.
+#include <utility>
+
 #include "gcode/controls/built_in.h"
 #include "gcode/curves/siemens_curves.h"
 
@@ -26,8 +28,10 @@ Control siemens(std::string_view name, std::string_view description, const Curve
 }  // namespace
 
 std::vector<Control> siemens_family() {
-  return {siemens("siemens", "Siemens 840D, 828D, ONE: POLY, arcs; lines of 512 characters",
-                  siemens_poly()),
+  Control poly = siemens("siemens", "Siemens 840D, 828D, ONE: POLY, arcs; lines of 512 characters",
+                         siemens_poly());
+  poly.curves_in_auto = true;
+  return {std::move(poly),
           siemens("siemens-bspline",
                   "as siemens, with BSPLINE under --output curves: not verified, try it first",
                   siemens_bspline())};

@@ -79,9 +79,6 @@ using CurveResult = std::variant<CurveReading, CurveRefusal>;
 // and read them.
 struct CurveFormat {
   std::string_view name;  // "G06.2"
-  // Whether curves are tried under --output auto: the control reads them without an option that
-  // the user has to own, and runs them as they are meant.
-  bool is_default = false;
   std::string_view caution = {};  // for who gets such curves: what is not verified; empty: nothing
   // Whether every piece is a block for itself. Otherwise a curve has blocks beside those of its
   // pieces, and short curves are not worth them.

@@ -380,7 +380,6 @@ CurveResult read_bspline(const Program& program, std::uint32_t first, const Curv
 
 const CurveFormat& siemens_poly() {
   static const CurveFormat kFormat = {.name = "POLY",
-                                      .is_default = true,
                                       // Of the size of the piece: half a step moves the piece by
                                       // less than the rounding of its ends.
                                       .other_mm = {.decimals = 6},

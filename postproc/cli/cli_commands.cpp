@@ -10,7 +10,6 @@
 #include <span>
 
 #include "gcode/controls/built_in.h"
-#include "gcode/curves/curve_format.h"
 #include "gcode/reading/dropped_words.h"
 #include "gcode/reading/target_marks.h"
 #include "gcode/state/modal_state.h"
@@ -739,8 +738,7 @@ ExploreCommand explore_command(Arguments& in) {
   options.convert = false;
   std::vector<std::string> tolerances = in.given.values("tolerance");
   if (tolerances.empty()) tolerances = {"0.005", "0.01", "0.02", "0.05"};
-  const bool curves = options.target != nullptr && options.target->curves != nullptr &&
-                      options.target->curves->is_default;
+  const bool curves = options.target != nullptr && options.target->curves_in_auto;
   for (const std::string& text : tolerances) {
     // What is wrong with the first has been said.
     if (&text != &tolerances.front() || !in.given.has("tolerance")) {

@@ -127,6 +127,9 @@ constexpr ProfileKey kKeys[] = {
      [](Control& c) -> double& { return c.chords.shortest; }, 0, 100},
     {"arcs", "chords-per-circle", "0: chord-length alone counts",
      [](Control& c) -> double& { return c.chords.per_circle; }, 0, 1e5},
+
+    {"curves", "auto", "the control has the option of its curves: --output auto tries them",
+     [](Control& c) -> bool& { return c.curves_in_auto; }},
 };
 
 const ProfileKey* find_key(std::string_view section, std::string_view name) {
@@ -379,6 +382,9 @@ class ProfileReader {
       if (ends < places) {
         complain_of("numbers", key, fmt::format("at least as many as places-{}", unit));
       }
+    }
+    if (control.curves_in_auto && control.curves == nullptr) {
+      complain_of("curves", "auto", "false: the target has no curves");
     }
     if (!(control.min_radius < control.max_radius)) {
       complain_of("arcs", "min-radius", "less than max-radius");

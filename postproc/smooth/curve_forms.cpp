@@ -51,7 +51,7 @@ bool curves_wanted(const RunTask& task) {
   const SmoothOptions& options = task.options;
   const gcode::CurveFormat* format = options.target->curves;
   if (format == nullptr || !may_start(*format, task.context.before)) return false;
-  return options.output == Form::kCurves || (options.output == Form::kAuto && format->is_default);
+  return options.output == Form::kCurves || (options.output == Form::kAuto && options.target->curves_in_auto);
 }
 
 // A form that could be made, and what it has at least.
@@ -197,7 +197,7 @@ class CurveForms {
   }
 
   void offer_curves() {
-    const bool few = task_.options.quick && !task_.options.target->curves->is_default;
+    const bool few = task_.options.quick && !task_.options.target->curves_in_auto;
     const std::vector<double> all = deviations();
     const bool any_number =
         task_.options.output == Form::kCurves || facts().form == Form::kCurves ||

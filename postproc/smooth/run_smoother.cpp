@@ -6,7 +6,6 @@
 #include <optional>
 #include <span>
 
-#include "gcode/curves/curve_format.h"
 #include "gcode/state/reason.h"
 #include "postproc/runs/run_path.h"
 #include "postproc/smooth/curve_forms.h"
@@ -225,8 +224,7 @@ class RunSmoother {
     if (rounding_is_worth_trying(bounds_.least_time(), best_time())) return true;
     const Selection so_far = choose(result_, options());
     if (!so_far.order.empty()) return false;
-    const gcode::CurveFormat* curves = options().target->curves;
-    if (wants_few_moves(options()) || (curves != nullptr && curves->is_default)) return true;
+    if (wants_few_moves(options()) || options().target->curves_in_auto) return true;
     const double few = kRun.far_fewer * result_.facts.scale.original.blocks;
     return so_far.reason == gcode::reason::kSlower &&
            std::ranges::any_of(result_.candidates,

@@ -408,8 +408,7 @@ TEST(CurveWriting, OfPolyLeavesOutZerosAtTheEnd) {
   EXPECT_EQ(written(siemens_poly(), curve_of({line})), "POLY PO[X]=(3) PO[Y]=(6)\n");
 }
 
-TEST(CurveWriting, OfBsplineIsNoDefaultAndReported) {
-  EXPECT_FALSE(siemens_bspline().is_default);
+TEST(CurveWriting, OfBsplineIsReported) {
   EXPECT_TRUE(siemens_bspline().caution.starts_with("BSPLINE is not verified"));
 }
 

@@ -140,11 +140,12 @@ TEST_F(ProfileFile, SaysWhereAValueIsWrongAndWhatItMayBe) {
        ":3:10: lines.length: 10, expected one of the keys max-length, blanks, comments, "
        "repeat-words"},
       {"[line]\nblanks = true",
-       ":2:1: line: a table, expected one of the sections numbers, lines, arcs, words"},
+       ":2:1: line: a table, expected one of the sections numbers, lines, arcs, curves, words"},
       // What does not go together.
       {"[numbers]\narc-ends-mm = 2", ":3:15: numbers.arc-ends-mm: 2, expected at least as many"},
       {"[arcs]\nwords = \"radius\"",
        ":3:9: arcs.words: \"radius\", expected max-sweep of 170 or less"},
+      {"[curves]\nauto = true", ":3:8: curves.auto: true, expected false: the target has no curves"},
       {"[arcs]\nmin-radius = 2000", ":3:14: arcs.min-radius: 2000, expected less than max-radius"},
       {"machine = \"lathe\"", ":2:11: machine: \"lathe\", expected one of "}};
   for (const auto& [lines, sentence] : kWrong) {

@@ -240,12 +240,23 @@ TEST(BestMethod, WritesCornersAsCurvesWhereTheTargetHasThem) {
   set_xyz(machine, &AxisLimits::jerk, 5000);
   SmoothOptions options = options_with(Method::kBest, "siemens", 0.1);
   options.machine = &machine;
-  const SmoothResult result = smoothed(
-      "G71 G90 G17 G64\nG0 X0 Y0 Z0\nG1 X20 F1500\nY20\nX40\nY0\nX60\nY20\nX80\nM30\n", options);
+  constexpr const char* kCorners =
+      "G90 G17\nG0 X0 Y0 Z0\nG1 X20. F1500.\nY20.\nX40.\nY0\nX60.\nY20.\nX80.\nM30\n";
+  const SmoothResult result = smoothed(std::string("G71 ") + kCorners, options);
   const RunReport& run = rewritten_run(result);
   EXPECT_EQ(run.method, "guo");
   EXPECT_LE(run.blocks_out, 20U);
   EXPECT_LT(run.time_after_s, 0.95 * run.time_before_s);
+  // G06.2 is an option of the control: the user says that it is there.
+  gcode::Control fanuc = *gcode::find_control("fanuc");
+  options.target = &fanuc;
+  const SmoothResult without = smoothed(std::string("G21 ") + kCorners, options);
+  EXPECT_EQ(without.text.find("G06.2"), std::string::npos);
+  fanuc.curves_in_auto = true;
+  const SmoothResult with = smoothed(std::string("G21 ") + kCorners, options);
+  EXPECT_NE(with.text.find("G06.2"), std::string::npos);
+  const RunReport& by_nurbs = rewritten_run(with);
+  EXPECT_LT(by_nurbs.time_after_s, 0.95 * by_nurbs.time_before_s);
 }
 
 TEST(BestMethod, DoesNotTryTheTubeWhereNothingLimitsJerk) {
