@@ -154,16 +154,23 @@ std::string poly_word(std::size_t axis, const std::string& end, const CubicBezie
   return word + ")";
 }
 
+// Places where pieces meet have the digits of the coefficients: rounded as other places, they make
+// the curvature jump by 6 / length^2 of half a step, for which a machine that limits jerk slows
+// down.
 CurveWriting write_poly(const BsplineCurve& curve, const CurveSetting& setting) {
   const std::vector<CubicBezier> pieces = curve.bezier_pieces();
   const PlacePrinter printer(setting);
+  CurveSetting finer = setting;
+  finer.places.decimals = std::max(setting.places.decimals, setting.other.decimals);
+  const PlacePrinter joints(finer);
   if (!printer.starts_at(pieces.front().control[0])) {
     return CurveRefusal{"the curve does not start at the tool's position"};
   }
   CurveLines lines;
   Point3 place = setting.start;
   for (std::size_t i = 0; i < pieces.size(); ++i) {
-    const PrintedPlace end = printer.place(pieces[i].control[3], i + 1 == pieces.size());
+    const bool is_last = i + 1 == pieces.size();
+    const PrintedPlace end = (is_last ? printer : joints).place(pieces[i].control[3], is_last);
     const CubicBezier piece = between(pieces[i], place, end.mm);
     std::string line = i == 0 ? "POLY" : "";
     for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -2,7 +2,8 @@
 """tube_in_programs.py BATTEN [--tolerances 0.125,0.25]
 
 Naseath's curves (tests/cases/naseath.json) as programs of lines that leave them by 0.001 mm, at
-24,000 mm/min on his machine (400 mm/s, 4000 mm/s2, 20000 mm/s3), written as curves for siemens by
+24,000 mm/min on his machine (400 mm/s, 4000 mm/s2, 20000 mm/s3), and the star and the butterfly of
+docs/algorithms/polylines.json at 1500 mm/min on that of Ozcan 2018, written as curves for siemens by
 `batten smooth --method fair` and `--method tube`, and by `best` in whatever form: a Markdown table of
 the seconds that `batten time --planner jerk` takes for the feed moves of what was written, and the least
 that any path in the band takes (`batten time --bound`)."""
@@ -15,13 +16,19 @@ import tempfile
 
 HERE = pathlib.Path(__file__).resolve().parent
 CASES = HERE.parent / "cases" / "naseath.json"
+POLYLINES = HERE.parent.parent / "docs" / "algorithms" / "polylines.json"
 CHORD = 0.001  # mm
-MACHINE = """based-on = "high-speed"
-name = "naseath"
-max-velocity = 400
-max-acceleration = 4000
-path-feed = 400
-""" + "".join("[axis.%s]\njerk = 20000\n" % axis for axis in "xyz")
+
+
+def machine(velocity, acceleration, jerk):
+    return ('based-on = "high-speed"\nname = "of-the-paper"\nmax-velocity = %g\npath-feed = %g\n'
+            % (velocity, velocity)
+            + "".join("[axis.%s]\nacceleration = %g\njerk = %g\n" % (axis, limit, jerk)
+                      for axis, limit in zip("xyz", acceleration)))
+
+
+NASEATH = machine(400, [4000] * 3, 20000)
+OZCAN = machine(25, [2500, 3000, 3000], 5000)
 
 
 def point_at(knots, points, u):
@@ -58,16 +65,16 @@ def chords(knots, points):
     return found
 
 
-def program(places):
+def program(places, feed=24000):
     xyz = [(p + [0, 0])[:3] if len(p) < 3 else p for p in places]
-    lines = ["G71 G90 G64", "G0 X%.6f Y%.6f Z%.6f" % tuple(xyz[0]), "G1 F24000"]
+    lines = ["G71 G90 G64", "G0 X%.6f Y%.6f Z%.6f" % tuple(xyz[0]), "G1 F%g" % feed]
     return "\n".join(lines + ["G1 X%.6f Y%.6f Z%.6f" % tuple(p) for p in xyz[1:]] + ["M30", ""])
 
 
 def feed_moves(batten, file, folder, *more):
     out = folder / "time.json"
     out.unlink(missing_ok=True)
-    subprocess.run([batten, "time", file, "-t", "siemens", "--machine", folder / "naseath.toml",
+    subprocess.run([batten, "time", file, "-t", "siemens", "--machine", folder / "machine.toml",
                     "--json", out, "--quiet", *more], check=True, capture_output=True)
     return json.loads(out.read_text())
 
@@ -78,23 +85,30 @@ def main():
     parser.add_argument("batten", type=pathlib.Path)
     parser.add_argument("--tolerances", default="0.125,0.25")
     args = parser.parse_args()
-    cases = {name: case for name, case in json.loads(CASES.read_text()).items()
-             if name.startswith("tc")}
+    tolerances = args.tolerances.split(",")
+    cases = []  # name, text, machine, tolerances
+    for name, case in json.loads(CASES.read_text()).items():
+        if not name.startswith("tc"):
+            continue
+        breaks = case["distinct_knots"]
+        knots = [breaks[0]] * 3 + breaks + [breaks[-1]] * 3
+        cases.append((name, program(chords(knots, case["control_points"])), NASEATH, tolerances))
+    polylines = json.loads(POLYLINES.read_text())["cases"]
+    for name in ("star, ten corners", "Guo's butterfly"):
+        cases.append((name, program(polylines[name]["points"], 1500), OZCAN, ["0.05"]))
     print("| curve, tolerance in mm | fair | tube | best | least in the band |\n|---|---|---|---|---|")
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        (folder / "naseath.toml").write_text(MACHINE)
-        for name, case in cases.items():
+        for name, text, limits, wanted in cases:
+            (folder / "machine.toml").write_text(limits)
             source = folder / "in.mpf"
-            breaks = case["distinct_knots"]
-            knots = [breaks[0]] * 3 + breaks + [breaks[-1]] * 3
-            source.write_text(program(chords(knots, case["control_points"])))
-            for tolerance in args.tolerances.split(","):
+            source.write_text(text)
+            for tolerance in wanted:
                 cells = []
                 for options in (["--method", "fair", "--output", "curves"],
                                 ["--method", "tube", "--output", "curves"], []):
                     subprocess.run([args.batten, "smooth", source, "-t", "siemens", "--machine",
-                                    folder / "naseath.toml", "--tolerance", tolerance, "-o",
+                                    folder / "machine.toml", "--tolerance", tolerance, "-o",
                                     folder / "out.mpf", "--force", "--quiet", *options], check=True)
                     took = feed_moves(args.batten, folder / "out.mpf", folder, "--planner", "jerk")
                     cells.append(took["cutting_s"])

@@ -412,6 +412,16 @@ TEST(CurveWriting, OfBsplineIsReported) {
   EXPECT_TRUE(siemens_bspline().caution.starts_with("BSPLINE is not verified"));
 }
 
+// With four, the curvature would jump where pieces meet.
+TEST(CurveWriting, OfPolyHasSixDecimalsWherePiecesMeetAndFourAtItsEnd) {
+  const Point3 joint(1.2345678, 2.3456789, 0);
+  const CubicBezier pieces[] = {{{{0, 0, 0}, {0.5, 1, 0}, {1, 2, 0}, joint}},
+                                {{joint, {1.5, 2.7, 0}, {2, 3, 0}, {3.3333333, 3.1, 0}}}};
+  const std::string text = written(siemens_poly(), curve_of({pieces[0], pieces[1]}));
+  EXPECT_NE(text.find("PO[X]=(1.234568,"), std::string::npos) << text;
+  EXPECT_NE(text.find("PO[X]=(3.3333,"), std::string::npos) << text;
+}
+
 TEST(CurveWriting, OfPolyRoundsEndsWithoutKinks) {
   for (std::uint32_t seed = 0; seed < 200; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);

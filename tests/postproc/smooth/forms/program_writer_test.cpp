@@ -166,7 +166,7 @@ TEST(WriteRun, HasTheCurvesThatItsNumbersSay) {
     const Point3 printed = geometry::end_point(out->moves[0].piece);
     EXPECT_LE((printed - geometry::start_point(out->moves[1].piece)).norm(), 1e-12);
     EXPECT_LE((printed - joint).norm(), 1e-3);
-    const Vector3 in_steps = printed / 1e-5;  // five decimals at the most
+    const Vector3 in_steps = printed / 1e-6;  // six decimals at the most
     EXPECT_LE((in_steps - in_steps.array().round().matrix()).norm(), 1e-6) << out->text;
     EXPECT_EQ(out->moves[1].feed, 1000);
   }
