@@ -36,8 +36,7 @@ namespace batten::postproc {
                                                                     gcode::Language target);
 
 // With --convert: the language of the program (language_before_target), where the target reads
-// another one. Nothing where nothing is to be
-// translated.
+// another one. Nothing where nothing is to be translated.
 [[nodiscard]] std::optional<gcode::Language> language_to_translate(const gcode::SourceText& source,
                                                                    const SmoothOptions& options);
 
