@@ -283,9 +283,27 @@ RunFacts facts_of(const Run& run, const RunContext& context, const SmoothOptions
 
 }  // namespace
 
+namespace {
+
+// Where the tube may be tried, which is found by plans, its rivals are timed by them as well.
+WorthAPlan worth_a_plan(const Run& run, const RunContext& context, const SmoothOptions& options) {
+  const Machine& machine = *options.machine;
+  const double tolerance = tolerance_of(run, options.tolerance_mm);
+  if (context.is_piece() || !std::isfinite(machine.max_jerk()) || options.method != Method::kBest ||
+      coarse_part(run, tolerance) >= kBounds.corners) {
+    return kForms;
+  }
+  const double alone =
+      cutting_time(timed_pieces(run, 0, run.points.size() - 1), machine, context.after.path);
+  const double least = least_time(run, tolerance, machine, options.tolerance_kind);
+  return tube_is_worth_trying(run.points.size(), least, alone) ? WorthAPlan{} : kForms;
+}
+
+}  // namespace
+
 SmoothedRun smooth_run(const Run& run, const RunContext& context, const SmoothOptions& options,
                        CandidateScope scope, RunMemo* memo) {
-  const RunTimes times(context, *options.machine);
+  const RunTimes times(context, *options.machine, worth_a_plan(run, context, options));
   SmoothedRun result;
   result.facts = facts_of(run, context, options, times);
   if (options.method == Method::kNone) {

@@ -108,10 +108,15 @@ TimedChain::TimedChain(std::span<const TimedPiece> pieces, const Machine& machin
   moving_ = with_length_and_feed(pieces, machine, feed_override);
 }
 
-double TimedChain::time(const Machine& machine, gcode::PathMode path, ChainEnd end) const {
+double TimedChain::time(const Machine& machine, gcode::PathMode path, ChainEnd end,
+                        WorthAPlan worth) const {
   const StretchChain chain = stretches_of(moving_, machine, path, end, WithPositions::kNo);
   const double time = profile_time(chain.stretches, chain.rules);
-  if (!takes_a_plan(chain, time)) return time;
+  const double slow = chain.in_slow_curves;
+  if (slow < worth.seconds * static_cast<double>(moving_.size()) || slow > worth.share * time ||
+      !takes_a_plan(chain, time)) {
+    return time;
+  }
   return PlannedMotion(moving_, machine, FeedPlanner::kJerk, path, kQuickPlanDensity).duration();
 }
 

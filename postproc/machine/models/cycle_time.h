@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -68,6 +69,16 @@ enum class WithPositions { kNo, kYes };
 // least-time plan (planned_chain.h) tells its time, with kQuickPlanDensity.
 [[nodiscard]] bool takes_a_plan(const StretchChain& chain, double time);
 
+// Which chains are worth the work of a plan, some 0.3 ms a piece.
+struct WorthAPlan {
+  double seconds = 0;  // of slow bends for each piece, at least
+  double share = 1;    // of the time, at most: with more there is a cusp
+};
+
+// Forms are compared by plans where the many of them are worth it.
+inline constexpr WorthAPlan kForms = {.seconds = 0.005, .share = 0.97};
+inline constexpr WorthAPlan kNoForms = {.seconds = std::numeric_limits<double>::infinity()};
+
 // The time of one chain of pieces under several settings of its control: what they have in common
 // is done once.
 class TimedChain {
@@ -76,9 +87,10 @@ class TimedChain {
   TimedChain(std::span<const TimedPiece> pieces, const Machine& machine, double feed_override = 1);
 
   // As cutting_time. `machine` may differ from that of the chain in what it makes of corners and
-  // of lines that it joins, not in its limits.
+  // of lines that it joins, not in its limits. Where no plan is worth it, it is the time of the
+  // stretches, whose slow bends are too slow.
   [[nodiscard]] double time(const Machine& machine, gcode::PathMode path,
-                            ChainEnd end = ChainEnd::kStop) const;
+                            ChainEnd end = ChainEnd::kStop, WorthAPlan worth = {}) const;
 
  private:
   std::vector<TimedPiece> moving_;

@@ -310,7 +310,15 @@ SearchResult searched(const SearchProblem& problem, std::vector<double> start,
 
 void BentSection::solve() {
   const SearchProblem rough = problem();
-  x = searched(rough, rough_start(rough), kFirst).unknowns;
+  std::vector<double> begin = rough_start(rough);
+  SearchResult first_found = searched(rough, begin, kFirst);
+  // It may lose itself, too, at a cusp: then all goes as slowly as that has to be passed.
+  if (!std::isfinite(first_found.seconds)) {
+    slow_down(rough, begin);
+    x = std::move(begin);
+    return;
+  }
+  x = std::move(first_found.unknowns);
   for (const RefineRule& rule : kRefinements) {
     BentSection finer = *this;
     if (finer.refine(rule) == 0 && &rule != &kRefinements.front()) return;

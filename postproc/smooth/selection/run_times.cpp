@@ -1,6 +1,7 @@
 #include "postproc/smooth/selection/run_times.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "gcode/text/large_pages.h"
 
@@ -11,10 +12,36 @@ namespace {
 constexpr double kHalf = 0.5;
 constexpr double kOneAndHalf = 1.5;
 
-double time_at(std::span<const TimedPiece> chain, const Machine& machine, gcode::PathMode path,
-               double feed_override) {
-  return TimedChain(chain, machine, feed_override).time(machine, path);
-}
+// A chain at settings of the feed override. Where a plan tells the programmed time, the others are
+// those of the stretches in the same ratio: plans are dear.
+class OverriddenTimes {
+ public:
+  // All must live as long.
+  OverriddenTimes(std::span<const TimedPiece> chain, const Machine& machine, gcode::PathMode path,
+                  WorthAPlan worth)
+      : chain_(chain), machine_(machine), path_(path), programmed_(at(1, worth)) {}
+
+  [[nodiscard]] double programmed() const { return programmed_; }
+
+  // Sets the others in `times`.
+  void put_others(Times& times) const {
+    const double stretches = std::isfinite(machine_.max_jerk()) ? at(1, kNoForms) : programmed_;
+    const double ratio = stretches > 0 ? programmed_ / stretches : 1;
+    times.at_half = ratio * at(kHalf, kNoForms);
+    times.at_one_and_half = ratio * at(kOneAndHalf, kNoForms);
+  }
+
+ private:
+  [[nodiscard]] double at(double feed_override, WorthAPlan worth) const {
+    return TimedChain(chain_, machine_, feed_override)
+        .time(machine_, path_, ChainEnd::kStop, worth);
+  }
+
+  std::span<const TimedPiece> chain_;
+  const Machine& machine_;
+  gcode::PathMode path_;
+  double programmed_;
+};
 
 }  // namespace
 
@@ -22,33 +49,38 @@ double control_period(const Machine& machine) {
   return std::max(machine.block_period, machine.servo_period);
 }
 
-Times times_of(std::span<const TimedPiece> chain, const Machine& machine, gcode::PathMode path) {
-  return {time_at(chain, machine, path, 1), time_at(chain, machine, path, kHalf),
-          time_at(chain, machine, path, kOneAndHalf)};
+Times times_of(std::span<const TimedPiece> chain, const Machine& machine, gcode::PathMode path,
+               WorthAPlan worth) {
+  const OverriddenTimes all(chain, machine, path, worth);
+  Times times;
+  times.programmed = all.programmed();
+  all.put_others(times);
+  return times;
 }
 
-RunTimes::RunTimes(const RunContext& context, const Machine& machine)
-    : context_(context), machine_(machine), around_(of_neighbours()) {}
+RunTimes::RunTimes(const RunContext& context, const Machine& machine, WorthAPlan worth)
+    : context_(context), machine_(machine), worth_(worth), around_(of_neighbours()) {}
 
 Times RunTimes::of_run(const std::vector<TimedPiece>& motions) const {
-  return times_of(in_place(motions), machine_, context_.after.path).add(around_, -1);
+  return times_of(in_place(motions), machine_, context_.after.path, worth_).add(around_, -1);
 }
 
 double RunTimes::programmed(const std::vector<TimedPiece>& moves) const {
-  return time_at(in_place(moves), machine_, context_.after.path, 1) - around_.programmed;
+  const std::vector<TimedPiece> chain = in_place(moves);
+  const OverriddenTimes all(chain, machine_, context_.after.path, worth_);
+  return all.programmed() - around_.programmed;
 }
 
 Times RunTimes::of_candidate(const std::vector<TimedPiece>& moves, const Times& old) const {
   const std::vector<TimedPiece> chain = in_place(moves);
-  const auto own = [&](double feed_override) {
-    return time_at(chain, machine_, context_.after.path, feed_override);
-  };
+  const OverriddenTimes all(chain, machine_, context_.after.path, worth_);
   Times times = old;
-  times.programmed = own(1) - around_.programmed;
+  times.programmed = all.programmed() - around_.programmed;
   // What a piece adds may be less than nothing: there one time says nothing of the others.
   if (!context_.is_piece() && is_slower(times, old, control_period(machine_))) return times;
-  times.at_half = own(kHalf) - around_.at_half;
-  times.at_one_and_half = own(kOneAndHalf) - around_.at_one_and_half;
+  all.put_others(times);
+  times.at_half -= around_.at_half;
+  times.at_one_and_half -= around_.at_one_and_half;
   return times;
 }
 
@@ -58,7 +90,9 @@ Times RunTimes::of_neighbours() const {
   if (context_.of_neighbours) return *context_.of_neighbours;
   Times sum;
   for (const auto* chain : {&context_.lead, &context_.tail}) {
-    if (!chain->empty()) sum += times_of(*chain, machine_, context_.after.path);
+    if (!chain->empty()) {
+      sum += times_of(*chain, machine_, context_.after.path, worth_);
+    }
   }
   return sum;
 }

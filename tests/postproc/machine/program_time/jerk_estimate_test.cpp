@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "postproc/machine/models/planned_chain.h"
+#include "postproc/smooth/selection/run_times.h"
 #include "tests/support/machine_limits.h"
 #include "tests/support/planned_paths.h"
 
@@ -165,6 +166,31 @@ INSTANTIATE_TEST_SUITE_P(
                     EstimateCase{"SplineOfScatteredPoints", spline_of_scattered_points, 0.01},
                     EstimateCase{"CurveAmongLines", curve_among_lines, 0.01}),
     [](const auto& test) { return test.param.name; });
+
+// Forms of few slow bends for each piece, and of cusps, are compared by their stretches, which are
+// too slow; the times at other settings of the override are so by as much.
+TEST(JerkEstimateOfForms, IsAPlanWhereThatIsWorthItsWork) {
+  constexpr auto kPath = gcode::PathMode::kBlending;
+  const auto timed = [](const std::vector<TimedPiece>& chain, WorthAPlan worth) {
+    return times_of(chain, fast_mill(), kPath, worth);
+  };
+  const std::vector<TimedPiece> chain = lobes(6000);
+  const double plan = estimated_of(chain, fast_mill());
+  const Times planned = timed(chain, {});
+  const Times by_stretches = timed(chain, kNoForms);
+  EXPECT_EQ(planned.programmed, plan);
+  EXPECT_GT(by_stretches.programmed, 1.05 * plan);
+  const double ratio = planned.programmed / by_stretches.programmed;
+  EXPECT_NEAR(planned.at_half, ratio * by_stretches.at_half, 1e-12);
+  EXPECT_NEAR(planned.at_one_and_half, ratio * by_stretches.at_one_and_half, 1e-12);
+  // Slow bends take less than all of it.
+  const double all = by_stretches.programmed / static_cast<double>(chain.size());
+  EXPECT_EQ(timed(chain, {.seconds = all}).programmed, by_stretches.programmed);
+  const geometry::CubicBezier cusp{
+      {Point3(0, 0, 0), Point3(10, 10, 0), Point3(0, 10, 0), Point3(10, 0, 0)}};
+  const std::vector<TimedPiece> sharp(1, {cusp, 6000});
+  EXPECT_LT(timed(sharp, {}).programmed, 0.1 * timed(sharp, kForms).programmed);
+}
 
 // Without a limit on jerk a joint goes by the speed of the axes alone, as it did.
 TEST(JerkEstimateOfAJoint, GoesByAccelerationWithoutALimitOnJerk) {
