@@ -148,6 +148,12 @@ class WordApplier {
         if (is_off(row)) modal().modal_macro = TriState::kOff;
         return;
       case CodeGroup::kNone:
+        // Alone it ends offsets, where it does anything.
+        if (row.act == CodeAct::kMachinePlace && !words_.has_any("XYZABCUVW")) {
+          forget_position(state_);
+          state_.work_offset = 0;
+        }
+        return;
       case CodeGroup::kStop:
       case CodeGroup::kTurning:
         return;
@@ -227,6 +233,7 @@ class WordApplier {
         return;
       default:
         return;
+        state_.work_offset = 0;  // on some controls these are offsets beside G54
     }
   }
 
@@ -242,6 +249,11 @@ class WordApplier {
   void apply_rotation(const CodeRow& row) {
     if (row.is(trait::kTilts)) return set_frame(row, modal().tilted_plane);
     if (is_off(row)) {
+    if (row.value.as<TriState>() == TriState::kUnknown) {
+      if (!words_.has_any("XYZP")) return;
+      effect_.takes_axes = true;
+      return set_frame(row, modal().rotation);
+    }
       CodeRow tilting = row;
       tilting.why = reason::kTiltedPlane;
       set_frame(tilting, modal().tilted_plane);

@@ -74,7 +74,7 @@ constexpr Meaning kMeaningsOfG[] = {
     {40, kNone, {}, why::kDwell, kOwnWords | kLosesNamed | kNoLengths, kDwell},
     // Exact stop; on Fagor an arc that starts tangentially.
     {90, kNone, {}, why::kExactStop, kEndsRun | kNotUnderstood},
-    {{110, 1870}, kNone, {}, why::kStateChange, kActs},  // G187 of Haas: how smooth
+    {1870, kNone, {}, why::kStateChange, kActs},  // Haas: how smooth
     {530, kNone, {}, why::kCoordinateChange, kTakesAll | kLosesNamed, kMachinePlace},
     // Data setting: work and tool offsets, and on FANUC lines of data until G11.
     {100, kAxisUser, {}, why::kCoordinateChange, kTakesAll | kLosesPlace, kWritesData},
@@ -139,6 +139,7 @@ constexpr Meaning kMeaningsOfG[] = {
     {680, kRotation, kOn, why::kRotation, kSet | kTakesAxes},
     {{682, 683, 684}, kRotation, kOn, why::kTiltedPlane, kSet | kTakesAxes | kTilts},
     {690, kRotation, kOff, why::kRotation, kSet},
+    {110, kRotation, TriState::kUnknown, why::kStateChange, kActs},  // Okuma; alone it ends G10
     {51, kSmoothing, {}, why::kControlSmoothing, kNoLengths},
     {1300, kSmoothing, kOff, why::kControlSmoothing},
     {1310, kSmoothing, kOn, why::kControlSmoothing},

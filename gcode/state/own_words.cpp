@@ -75,7 +75,9 @@ void apply_own(const OwnEffect& effect, ControlState& state) {
     state.modal.spindle_speed.reset();
     state.other_motion = {};
   }
-  if (!effect.keeps_place) forget_position(state);
+  if (effect.keeps_place) return;
+  forget_position(state);
+  state.work_offset = 0;  // it may have chosen another
 }
 
 }  // namespace batten::gcode

@@ -72,6 +72,15 @@ TEST_P(VouchedWords, LeaveNoPlaceKnownThatTheyLose) {
   }
 }
 
+// The word may have chosen another work offset: G54 then comes back, from elsewhere.
+TEST_P(VouchedWords, LeaveNoWorkOffsetKnownWhereTheyLoseThePlace) {
+  const auto& [text, name] = GetParam();
+  const std::string back = text + "\nG1 X3 Y2 Z2 F100\nG54\n";
+  EXPECT_FALSE(cuts_behind(back, vouching({{name, "position unknown"}}), "X4\n"));
+  EXPECT_FALSE(cuts_behind(back, vouching({{name, "moves"}}), "X4\n"));
+  EXPECT_TRUE(cuts_behind(back, vouching({{name, "keeps state"}}), "X4\n"));
+}
+
 // Who cuts on under the G1 and the F of before would cut at the feed of the macro.
 TEST_P(VouchedWords, LeaveNoFeedAndNoKindOfMotionKnownWhereTheyMove) {
   const auto& [text, name] = GetParam();
@@ -97,8 +106,7 @@ INSTANTIATE_TEST_SUITE_P(
                     VouchedCase{"M98 P9001", "M98 P9001"}, VouchedCase{"M98 P9001 L5", "M98 P9001"},
                     VouchedCase{"M198 P12", "M198 P12"},
                     // Zero points of a Philips control.
-                    VouchedCase{"G51", "G51"}, VouchedCase{"G52", "G52"},
-                    VouchedCase{"G55", "G55"},
+                    VouchedCase{"G51", "G51"}, VouchedCase{"G52", "G52"}, VouchedCase{"G55", "G55"},
                     VouchedCase{"o<probe> call", "O<PROBE> CALL"},
                     VouchedCase{"O 100 CALL [#1] [2]", "O100 CALL"}));
 
