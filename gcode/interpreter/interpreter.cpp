@@ -143,7 +143,7 @@ class Interpreter {
         ++i;
       }
     }
-    follow_lost_modes(program_, read_, options_.asked, carry_.lost, carry_.told, found_);
+    follow_lost_modes(program_, flow, read_, options_.asked, carry_.lost, carry_.told, found_);
     carry_.any_words |= !nothing_said_yet();
     carry_.state = now_;
     carry_.unit_word_seen = read_.unit_word_seen;
@@ -216,6 +216,7 @@ class Interpreter {
       is_klartext() ? forget_klartext(now_) : forget_everything(now_);
       now_.modal.stated.by_control_mm = least_by_control_;
     }
+    if (flow.in_definition == InDefinition::kFirst) before_definition_ = now_;
     if (block.block_delete) {
       read_uncertain(block, reason::kBlockDelete);
     } else if (!has_command(index)) {
@@ -223,6 +224,7 @@ class Interpreter {
     } else {
       read_words_or_text(block);
     }
+    if (flow.in_definition == InDefinition::kLast && before_definition_) leave_definition();
     if (options_.stated_tolerances) read_stated_tolerances(block);
     add_barriers_of_surroundings(block, flow);
     forget_motion_word();
@@ -230,6 +232,14 @@ class Interpreter {
     if (is_siemens()) now_.modal.arc_distance = DistanceMode::kIncremental;
     meaning_.state_after = state_now();
     read_.blocks.push_back(meaning_);
+  }
+
+  // What it defines was not run. Comments are for the text that follows them.
+  void leave_definition() {
+    const StatedTolerances stated = now_.modal.stated;
+    now_ = *before_definition_;
+    now_.modal.stated = stated;
+    before_definition_.reset();
   }
 
   // What a block says holds for its own motion, too: comments are for the text that follows them,
@@ -749,6 +759,7 @@ class Interpreter {
 
 // Nothing of it is certain, and no word alone says what it seems to say.
 void make_all_opaque(const Program& program, Interpretation& read) {
+  std::optional<ControlState> before_definition_;  // of a subprogram, in which the block stands
   for (std::size_t i = 0; i < read.blocks.size(); ++i) {
     BlockMeaning& meaning = read.blocks[i];
     const Block& block = program.blocks[i];

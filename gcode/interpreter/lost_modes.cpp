@@ -54,12 +54,14 @@ bool names_place(const Program& program, const Block& block) {
 
 }  // namespace
 
-void follow_lost_modes(const Program& part, const Interpretation& read, ModeSet asked,
-                       LostModes& modes, DiagnosticLimiter& limiter, Diagnostics& found) {
+void follow_lost_modes(const Program& part, const std::vector<BlockFlow>& flow,
+                       const Interpretation& read, ModeSet asked, LostModes& modes,
+                       DiagnosticLimiter& limiter, Diagnostics& found) {
   std::uint32_t state = 0;
   bool known = is_known(read.states[0], asked);
   std::optional<std::uint32_t> missing_of;  // the state that modes.missing is of
   for (std::size_t i = 0; i < read.blocks.size(); ++i) {
+    if (flow[i].in_definition != InDefinition::kNo) continue;
     const BlockMeaning& meaning = read.blocks[i];
     const bool was_known = known;
     if (meaning.state_after != state) {

@@ -3,7 +3,9 @@
 
 #include <cstddef>
 #include <string>
+#include <vector>
 
+#include "gcode/state/block_flow.h"
 #include "gcode/state/diagnostic_limiter.h"
 #include "gcode/state/motion.h"
 #include "gcode/text/diagnostic.h"
@@ -23,9 +25,10 @@ struct LostModes {
 
 // Follows the states of a part that was interpreted, and adds a warning modes-unknown for each
 // block behind which moves are copied because modes that are asked for are unknown (is_known), once
-// these are set again. Linear.
-void follow_lost_modes(const Program& part, const Interpretation& read, ModeSet asked,
-                       LostModes& modes, DiagnosticLimiter& limiter, Diagnostics& found);
+// these are set again. Definitions of subprograms (`flow`) are no part of that. Linear.
+void follow_lost_modes(const Program& part, const std::vector<BlockFlow>& flow,
+                       const Interpretation& read, ModeSet asked, LostModes& modes,
+                       DiagnosticLimiter& limiter, Diagnostics& found);
 
 // The warning of modes that are not known to the end of the program.
 void tell_lost_modes(const LostModes& modes, Diagnostics& found);

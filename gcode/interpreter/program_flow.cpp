@@ -80,6 +80,11 @@ std::string_view o_word_keyword(std::string_view bare) {
   return known ? keyword : bare;
 }
 
+// O100, O<PART>: neither computed nor missing.
+bool is_plain_name(std::string_view name) {
+  return name.size() > 1 && name.find_first_of("#[") == std::string_view::npos;
+}
+
 // +1 where a body begins, -1 where it ends.
 int body_step(std::string_view bare) {
   if (starts_with_word_and_digit(bare, "END")) return -1;  // macro B: END1
@@ -170,6 +175,7 @@ class FlowFinder {
       note_program(find_word(program_.words_of(block), 'O'));
       return;
     }
+      defined_.clear();  // a % ends the program
     const auto words = program_.words_of(block);
     if (block.opacity == ParseStatus::kNone && program_.language == Language::kRs274 &&
         std::ranges::none_of(words, names_flow)) {
@@ -195,6 +201,7 @@ class FlowFinder {
     if (is_program_number(bare)) {
       close_segment(i);
       note_program(find_word(program_.words_of(program_.blocks[i]), 'O'));
+    follow_definition(i, bare);
     }
     const int step = body_step(bare);
     reaches_out_ |= step != 0;
@@ -206,6 +213,38 @@ class FlowFinder {
     const std::size_t at = std::min(text.find_first_not_of("/ \t"), text.size());
     return upper(char_at(text, at)) == 'N' ? number_at(text, at + 1) : std::nullopt;
   }
+  // From o100 sub to o100 endsub, where nothing between them can end the definition or be another.
+  void follow_definition(std::size_t i, std::string_view bare) {
+    const std::string_view keyword = o_word_keyword(bare);
+    const bool is_known = !keyword.empty() && keyword.size() < bare.size();
+    const std::string_view name = bare.substr(0, bare.size() - keyword.size());
+    const bool may_be_skipped = program_.blocks[i].block_delete;
+    if (defined_.empty()) {
+      const bool begins = is_known && keyword == "SUB" && is_plain_name(name) && depth_ == 0;
+      if (!begins || may_be_skipped) return;
+      defined_ = name;
+      definition_begin_ = i;
+      return;
+    }
+    const bool is_mine = is_known && name == defined_;
+    if (is_mine && keyword.starts_with("RETURN")) return;
+    const bool ends = is_mine && keyword.starts_with("ENDSUB") && !may_be_skipped;
+    if (ends) definitions_.emplace_back(definition_begin_, i);
+    const bool is_unclear =
+        is_mine || keyword.starts_with("SUB") || contains(is_known ? keyword : bare, "ENDSUB");
+    if (is_unclear) defined_.clear();
+  }
+
+  // What a jump can come to from outside goes on behind the definition.
+  void mark_definition(std::size_t first, std::size_t last) {
+    const auto begin = flow_.begin() + static_cast<std::ptrdiff_t>(first);
+    const auto end = flow_.begin() + static_cast<std::ptrdiff_t>(last) + 1;
+    if (std::any_of(begin, end, [](const BlockFlow& each) { return each.jump_target; })) return;
+    for (auto each = begin; each != end; ++each) each->in_definition = InDefinition::kWithin;
+    begin->in_definition = InDefinition::kFirst;
+    flow_[last].in_definition = InDefinition::kLast;
+  }
+
 
   static std::optional<Label> number_at(std::string_view text, std::size_t at) {
     constexpr std::size_t kMaxDigits = 15;
@@ -276,8 +315,8 @@ class FlowFinder {
   // Of a block whose words are not all listed.
   void note_hidden_call(ParseStatus opacity, std::string_view text, std::string_view bare) {
     if (opacity == ParseStatus::kExpression || opacity == ParseStatus::kCornerWord) return;
-    const bool foreign = opacity == ParseStatus::kForeign && calls_siemens_program(text) &&
-                         !is_open_number(text);
+    const bool foreign =
+        opacity == ParseStatus::kForeign && calls_siemens_program(text) && !is_open_number(text);
     if (foreign || contains(bare, "M98") || contains(bare, "G65"))
       called_.emplace_back(std::nullopt);
   }
@@ -388,6 +427,11 @@ class FlowFinder {
   bool segment_is_subprogram_ = false;
   bool is_left_early_ = false;  // by an M99 before the last one, or one that names a block
   std::size_t last_block_ = 0;  // with M99
+  std::vector<std::pair<std::size_t, std::size_t>> definitions_;  // first and last block
+  std::string defined_;  // O100, O<PART>: of the definition that is not over; empty: none
+  std::size_t definition_begin_ = 0;
+  std::vector<std::size_t> named_;  // blocks that are names, for jumps (Okuma)
+  bool by_name_ = false;            // jumps may name them
   bool says_more_ = false;
   bool cuts_ = false, says_plane_ = false, says_units_ = false, says_distance_ = false,
        says_cutter_ = false, changes_tool_ = false;
@@ -405,8 +449,7 @@ std::string o_word_call(std::string_view text) {
   while (rest.starts_with('['))
     rest.remove_prefix(std::min(closing_bracket(rest, 0) + 1, rest.size()));
   const std::string name = bare.substr(0, bare.size() - keyword.size());
-  const bool is_plain = std::ranges::all_of(name, [](char c) { return c != '#' && c != '['; });
-  return rest.empty() && is_plain ? name + " CALL" : std::string();
+  return rest.empty() && is_plain_name(name) ? name + " CALL" : std::string();
 }
 
 ProgramFlow follow_flow(const Program& program, Returns returns, const OwnWords* own,

@@ -16,11 +16,15 @@ enum class FlowEffect : std::uint8_t {
   kEverything,     // loops, branches: the state after it depends on what was executed
 };
 
+// LinuxCNC: o100 sub .. o100 endsub is passed over where it stands; only a call runs what it says.
+enum class InDefinition : std::uint8_t { kNo, kFirst, kWithin, kLast };
+
 struct BlockFlow {
   bool label_referenced = false;  // its N number is, or may be, named elsewhere
   bool jump_target = false;       // control can come to it from another place
   bool in_body = false;           // of a loop, a subprogram, or a contour that a cycle names
   bool in_called = false;         // the whole program is one that others call
+  InDefinition in_definition = InDefinition::kNo;
 };
 
 struct ProgramFlow {

@@ -140,6 +140,7 @@ class PlainReader(Reader):
         self.onwards = None  # of the last G5: the way in which it arrived
         self.even = None  # of G5.2: its points, their weights, whether they are a curve, order, words
         self.begun = False
+        self.defines = ""  # the subprogram whose definition is passed over
         self.offset_code = None
         # Of those that want it around curves: G05 P.
         self.look_ahead = 0 if kind in ("syntec", "mitsubishi") else None
@@ -201,6 +202,13 @@ class PlainReader(Reader):
         body = self.comments_of(line).upper()
         stripped = body.strip()
         if not stripped or stripped == "%":
+            return
+        definition = re.fullmatch(r"(?:N\d+)?O(\d+|<\w+>)(SUB|ENDSUB)", "".join(stripped.split()))
+        if self.kind == "linuxcnc" and (self.defines or definition and definition.group(2) == "SUB"):
+            self.event("defined " + "".join(body.split()))
+            self.defines = self.defines or definition.group(1)
+            if definition and definition.groups() == (self.defines, "ENDSUB"):
+                self.defines = ""
             return
         if stripped.startswith("/"):
             self.used_effects.add("deleted")

@@ -148,6 +148,62 @@ TEST(ProgramFlow, CallsThatComeBackBehindThemselvesNameNoLabel) {
   EXPECT_FALSE(Interpreted(text, ReadOptions{.calls_keep_modes = true}).line(3).label_referenced);
 }
 
+struct DefinitionCase {
+  const char* text;
+  Lines lines;  // of definitions
+};
+
+const DefinitionCase kDefinitionRows[] = {
+    {"o<part> sub\nX1\no<part> endsub\nX2\n", {1, 2, 3}},
+    {"X1\n N5 O 100 Sub (a)\nX1\no100 return\nX2\no100 endsub [5]\nX2\n", {2, 3, 4, 5, 6}},
+    {"o1 sub\no2 if [1]\nM2\no2 endif\no<subs> call\no1 endsub\n", {1, 2, 3, 4, 5, 6}},
+    {"o1 sub\nX1\no1 endsub\no2 sub\no2 endsub\n", {1, 2, 3, 4, 5}},
+    // Where it ends is not certain, or whether it is one.
+    {"o1 sub\nX1\no2 endsub\nX2\no1 endsub\n", {}},
+    {"o1 sub\nX1\no[1] endsub\nX2\no1 endsub\n", {}},
+    {"o1 sub\nX1\no01 endsub\nX2\no1 endsub\n", {}},
+    {"o1 sub\no2 sub\nX1\no2 endsub\nX2\no1 endsub\n", {}},
+    {"o1 sub\no1 if [1]\nX1\no1 endif\no1 endsub\n", {}},
+    {"o1 sub\nX1\nG1 o1 endsub\nX2\no1 endsub\n", {}},
+    {"%\no1 sub\nX1\n%\no1 endsub\n", {}},
+    {"o1 sub\nX1\n/o1 endsub\nX2\no1 endsub\n", {}},
+    {"/o1 sub\nX1\no1 endsub\n", {}},
+    {"o#1 sub\nX1\no#1 endsub\n", {}},
+    {"o9 while [1]\no1 sub\nX1\no1 endsub\no9 endwhile\n", {}},
+    {"o1 sub\nN10 X1\no1 endsub\nGOTO 10\n", {}},
+    {"o1 sub\nX1\n", {}}};
+
+TEST(ProgramFlow, DefinitionsArePassedOverWhereTheyStand) {
+  for (const DefinitionCase& row : kDefinitionRows) {
+    SCOPED_TRACE(row.text);
+    Diagnostics found;
+    const Program program = parse(SourceText("test.ngc", row.text), found);
+    const std::vector<BlockFlow> flow = follow_flow(program, Returns::kBehindCalls).blocks;
+    Lines lines;
+    for (std::size_t i = 0; i < flow.size(); ++i) {
+      if (flow[i].in_definition != InDefinition::kNo) lines.push_back(i + 1);
+    }
+    EXPECT_EQ(lines, row.lines);
+  }
+}
+
+// As LinuxCNC passes over them: modes, position, feed and kind of motion are as before.
+TEST(ProgramFlow, WhatADefinitionSaysChangesNothingBehindIt) {
+  const std::string head = "G21 G17 G90 G94 G40 G64\nG0 X1 Y1 Z1\nG1 X2 F100\n";
+  const std::string body = "o100 sub\nG20 G91 G18 G0 X5 F7 S9\nM2\no100 endsub\n";
+  const Interpreted it(head + body + "X3\n");
+  const Motion* cut = it.motion_of_line(8);
+  ASSERT_NE(cut, nullptr);
+  EXPECT_EQ(cut->kind, MotionKind::kLine);
+  EXPECT_TRUE(cut->start_known);
+  EXPECT_EQ(cut->piece.start().x(), 2);
+  EXPECT_EQ(it.last_state(), Interpreted(head).last_state());
+  EXPECT_TRUE(it.found.empty()) << "no word of modes that are not known";
+  EXPECT_FALSE(it.read.blocks[4].barrier.empty()) << "what it defines is kept";
+  EXPECT_FALSE(is_known(Interpreted(head + body + "o100 call\nX3\n").last_state()));
+  EXPECT_FALSE(is_known(Interpreted(head + "M2\n" + body + "X3\n").last_state()));
+}
+
 TEST(ProgramFlow, JumpTargetsAreEnteredWithNothingKnown) {
   const Interpreted it("G21 G90 F9\nG0 X1 Y1 Z1\nG1 X2\nN10 G1 X3\nG1 X4\nIF [#1 LT 3] GOTO 10\n");
   EXPECT_TRUE(it.line(4).entered_from_elsewhere);
