@@ -99,6 +99,12 @@ struct OtherMeaning {
   std::string_view text;  // what to say instead
 };
 
+// As a user says it of a word of his (gcode/state/own_words.h): "G103", "keeps state".
+struct ControlWord {
+  std::string_view name;
+  std::string_view effect;
+};
+
 struct Control {
   std::string name;                      // "linuxcnc"
   std::string description;               // one line, for `batten targets`
@@ -123,6 +129,7 @@ struct Control {
   bool repeats_words = false;  // each block names its motion, each arc both axes of its plane
   // Blocks are commands: most builds leave out one without a G, M or T word.
   bool needs_commands = false;
+  bool names_blocks = false;  // NAT01 names a block, OPART a program
   UnitWords unit_words;
   CommentStyle comments = CommentStyle::kParentheses;
   std::string_view not_in_comments;  // bytes that the control obeys there too
@@ -163,8 +170,8 @@ struct Control {
   // with other marks was made for others.
   SourceMarks known_marks = 0;
   std::vector<OtherMeaning> other_meanings;
-  // G words (in tenths) that choose a zero point there; elsewhere they scale or shift.
-  std::vector<int> zero_points;
+  // Words that it has for itself, or for something else than most: what is known behind them.
+  std::vector<ControlWord> own_words;
   // Words that most others of the RS-274 family take and this one refuses, as far as is known: "M6
   // G43 T", a letter alone for any number behind it.
   std::string_view refused;

@@ -30,13 +30,22 @@ Control fanuc_like(std::string_view name, std::string_view description, const Cu
 }  // namespace
 
 std::vector<Control> fanuc_family() {
-  return {
-      fanuc_like("fanuc", "FANUC: arcs and helices; G06.2 under --output curves", fanuc_curves()),
+  Control fanuc =
+      fanuc_like("fanuc", "FANUC: arcs and helices; G06.2 under --output curves", fanuc_curves());
+  const Control syntec =
       fanuc_like("syntec", "Syntec: arcs and helices; G06.2 in G05 P10000 under --output curves",
-                 syntec_curves()),
-      fanuc_like("mitsubishi",
-                 "Mitsubishi M700V: arcs and helices; G06.2 in G05 P10000 under --output curves",
-                 mitsubishi_curves())};
+                 syntec_curves());
+  Control mitsubishi = fanuc_like(
+      "mitsubishi", "Mitsubishi M700V: arcs and helices; G06.2 in G05 P10000 under --output curves",
+      mitsubishi_curves());
+  // The tool turns into the tilted plane; the axes are kept out of a zone.
+  fanuc.own_words = {{"G53.1", "position unknown"},
+                     {"G53.6", "position unknown"},
+                     {"G22", "keeps state"},
+                     {"G23", "keeps state"}};
+  mitsubishi.own_words = {
+      {"G53.1", "position unknown"}, {"G22", "keeps state"}, {"G23", "keeps state"}};
+  return {fanuc, syntec, mitsubishi};
 }
 
 }  // namespace batten::gcode

@@ -8,6 +8,19 @@ namespace {
 constexpr SourceMarks kMacro = mark(SourceMark::kMacroFlow);
 constexpr SourceMarks kFanucLike = kMacro | mark(SourceMark::kHighSpeedMode);
 
+constexpr std::string_view kElsewhere = "position unknown";
+
+// Work offsets, and those that follow the table (G254); how many blocks are read ahead.
+std::vector<ControlWord> words_of_haas() {
+  std::vector<ControlWord> words = {{"G103", "keeps state"}};
+  for (const std::string_view name :
+       {"G110", "G111", "G114", "G115", "G116", "G117", "G118", "G119", "G120", "G121", "G122",
+        "G123", "G124", "G125", "G126", "G127", "G128", "G129", "G154", "G254", "G255"}) {
+    words.push_back({name, kElsewhere});
+  }
+  return words;
+}
+
 // Tool lengths come with D.
 constexpr std::string_view kLengthByD = "G43 G49 H";
 
@@ -34,11 +47,12 @@ std::vector<OtherMeaning> other_words_of_philips() {
   std::vector<OtherMeaning> words = {
       {200, "no inch word there, whose units are G70 and G71"},
       {210, "no millimetre word there, whose units are G70 and G71"}};
-  for (const int code : {110, 120, 130, 140, 220, 230, 250, 260, 270, 280, 290, 310, 430, 440, 500,
-                         530, 600, 610, 620, 630, 640, 720, 730, 740, 770, 780, 790, 920, 930, 980,
-                         990}) {
-    words.push_back({code, "it may repeat or call blocks, switch their geometry or move the "
-                           "coordinates there"});
+  for (const int code :
+       {110, 120, 130, 140, 220, 230, 250, 260, 270, 280, 290, 310, 430, 440, 500, 530,
+        600, 610, 620, 630, 640, 720, 730, 740, 770, 780, 790, 920, 930, 980, 990}) {
+    words.push_back({code,
+                     "it may repeat or call blocks, switch their geometry or move the "
+                     "coordinates there"});
   }
   return words;
 }
@@ -62,11 +76,13 @@ std::vector<Control> machining_center_family() {
        "(bare G187: back to setting 191 and 85)"});
   haas.dwell_form = DwellForm::kSecondsByPoint;
   haas.lacks += mode::kControlSmoothing;  // G187 says how smooth, G5.1 is unknown to it
+  haas.own_words = words_of_haas();
 
-  const Control mazak = machining_center(
+  Control mazak = machining_center(
       "mazak", "Mazak EIA: arcs and helices in G17, G18, G19; decimal point always", kFanucLike,
       {"before-run = [\"G61.1\"]  # geometry compensation; from memory, ask your manual",
        "after-run = [\"G64\"]"});
+  mazak.own_words = {{"G53.1", kElsewhere}};  // turns the tool into the tilted plane
 
   Control okuma = machining_center(
       "okuma", "Okuma OSP: arcs and helices in G17, G18, G19; decimal point always",
@@ -74,14 +90,17 @@ std::vector<Control> machining_center_family() {
       {"before-run = [\"G131 F5000 J1 E{tolerance}\"]  # its numbers are the machine builder's",
        "after-run = [\"G130\"]"});
   okuma.smoothing_off = "G130";
+  okuma.names_blocks = true;
   // G54 to G59 are tool lengths there, work offsets are G15 H.
   okuma.refused = "G43 G49 G54 G55 G56 G57 G58 G59 H";
+  okuma.own_words = {{"G53", kElsewhere}};  // ends them, for all blocks behind it
 
-  const Control brother = machining_center(
+  Control brother = machining_center(
       "brother", "Brother Speedio: arcs and helices in G17, G18, G19; decimal point always",
       kFanucLike,
       {"before-run = [\"M262\"]  # M260 series, high accuracy; from memory, ask your manual",
        "after-run = [\"M269\"]"});
+  brother.own_words = {{"G100", "moves"}};  // changes the tool on the way to X, Y and Z
 
   // ISNC takes I J K as offsets, BNC as places.
   Control hurco = machining_center(
@@ -96,6 +115,7 @@ std::vector<Control> machining_center_family() {
       mark(SourceMark::kHashCommand));
   fagor.smoothing_off = "";
   fagor.decimal_point = false;
+  fagor.own_words = {{"#MSG", "keeps state"}};  // shown to people
   fagor.refused = kLengthByD;
   fagor.other_meanings = {{200, "no inch word on Fagor, whose units are G70 and G71"},
                           {210, "no millimetre word on Fagor, whose units are G70 and G71"}};
@@ -119,7 +139,7 @@ std::vector<Control> machining_center_family() {
   philips.helices = false;
   write_arcs_by_radius(philips);
   philips.centers_follow_distance = true;
-  philips.zero_points = {510, 520};
+  philips.own_words = {{"G51", kElsewhere}, {"G52", kElsewhere}};  // they choose zero points
   philips.refused = "G43 G49 G64 H";
   philips.other_meanings = other_words_of_philips();
 

@@ -35,8 +35,11 @@ std::vector<Control> pc_family() {
   Control edingcnc = pc("edingcnc", "EdingCNC: arcs and helices in G17, G18, G19");
   edingcnc.known_marks = mark(SourceMark::kBlendTolerance);
 
+  edingcnc.own_words = {{"MSG", "keeps state"}};  // shown to people
+
   Control planetcnc = pc("planetcnc", "PlanetCNC: arcs and helices in G17, G18, G19");
-  planetcnc.known_marks = mark(SourceMark::kBlendTolerance) | mark(SourceMark::kUniformNurbs);
+  planetcnc.known_marks = mark(SourceMark::kBlendTolerance) | mark(SourceMark::kUniformNurbs) |
+                          mark(SourceMark::kSubWords) | mark(SourceMark::kNamedParameters);
 
   Control centroid =
       pc("centroid", "Centroid: arcs and helices in G17, G18, G19; decimal point always", {3, 4});

@@ -45,6 +45,7 @@ Control beckhoff() {
   control.known_marks = mark(SourceMark::kHashCommand);
   control.refused = "G43 G49 G80 M6 H";
   control.dwell_form = DwellForm::kSecondsX;
+  control.own_words = {{"G53", "position unknown"}};  // no work offset, for all blocks behind it
   control.unit_words = {.mm = "G71", .inch = "G70"};  // known for certain
   return control;
 }

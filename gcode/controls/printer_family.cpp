@@ -27,6 +27,23 @@ Control printer(std::string_view name, std::string_view description, ArcChords c
   return control;
 }
 
+// Of its documentation; a macro of the user's can have the same name only where he renames these.
+std::vector<ControlWord> commands_of_klipper() {
+  std::vector<ControlWord> words;
+  for (const std::string_view name :
+       {"SET_VELOCITY_LIMIT", "SET_PIN", "SET_FAN_SPEED", "SET_LED", "SET_SERVO", "RESPOND",
+        "SET_PRESSURE_ADVANCE", "SET_INPUT_SHAPER", "SET_HEATER_TEMPERATURE", "TURN_OFF_HEATERS",
+        "TEMPERATURE_WAIT", "SET_IDLE_TIMEOUT", "SET_PRINT_STATS_INFO", "EXCLUDE_OBJECT_DEFINE",
+        "SAVE_GCODE_STATE"}) {
+    words.push_back({name, "keeps state"});
+  }
+  for (const std::string_view name : {"SET_GCODE_OFFSET", "BED_MESH_CLEAR", "BED_MESH_PROFILE",
+                                      "EXCLUDE_OBJECT_START", "EXCLUDE_OBJECT_END"}) {
+    words.push_back({name, "position unknown"});
+  }
+  return words;
+}
+
 }  // namespace
 
 std::vector<Control> printer_family() {
@@ -42,6 +59,7 @@ std::vector<Control> printer_family() {
                             "read only by builds with inch support; others run the numbers as "
                             "millimetres. Post the program in millimetres"}};
   marlin.curves = &chopped_g5();
+  marlin.own_words = {{"G29", "moves"}};  // looks for the bed
 
   Control reprapfirmware = printer("reprapfirmware",
                                    "RepRapFirmware 3: arcs and helices in G17, G18, G19 where its "
@@ -59,6 +77,7 @@ std::vector<Control> printer_family() {
       {.longest = 1});  // [gcode_arcs] resolution
   klipper.sweep_noise = SweepNoise::kDoublePrecision;
   klipper.machine = "klipper-router";
+  klipper.own_words = commands_of_klipper();
   klipper.planes = {true, false, false};
   klipper.needs_commands = true;
   klipper.other_meanings = {

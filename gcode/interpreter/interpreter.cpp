@@ -162,7 +162,7 @@ class Interpreter {
   [[nodiscard]] ProgramFlow flow_of_program() const {
     ProgramFlow flow =
         follow_flow(program_, now_.calls_keep_modes ? Returns::kBehindCalls : Returns::kToAnyLabel,
-                    now_.own_words, options_.subprograms.get());
+                    now_.own_words, options_.subprograms.get(), options_.names_blocks);
     for (BlockFlow& each : flow.blocks) {
       each.in_body |= each.in_called && !options_.usual_caller_modes;
     }
@@ -460,20 +460,29 @@ class Interpreter {
         return make_opaque(reason::kForeignWords);
       }
     }
+    if (options_.names_blocks && names_block(text)) return make_opaque(reason::kProgramFlow);
     apply_opaque(block.opacity, text, now_);
     const bool calls = is_flow && flow_effect(text) == FlowEffect::kCall;
     make_opaque(calls ? reason::kSubprogram : opacity_reason(block.opacity));
+  }
+
+  // Where something may jump to the name, what it finds there was forgotten.
+  [[nodiscard]] bool names_block(std::string_view text) {
+    return is_letter_name(text, 'N') || (is_letter_name(text, 'O') && nothing_said_yet());
   }
 
   // What the user says of a line that is a call by name.
   [[nodiscard]] const OwnWord* own_called_by(const Block& block) const {
     if (now_.own_words == nullptr) return nullptr;
     const std::string_view text = program_.source.text(block.span);
-    if (!is_siemens()) {
-      return block.opacity == ParseStatus::kFlow ? own_call(now_, o_word_call(text)) : nullptr;
-    }
     const bool may_call =
         block.opacity == ParseStatus::kForeign || block.opacity == ParseStatus::kNamedWords;
+    if (!is_siemens()) {
+      const bool is_flow = block.opacity == ParseStatus::kFlow;
+      return is_flow    ? own_call(now_, o_word_call(text))
+             : may_call ? own_call(now_, leading_name(text))
+                        : nullptr;
+    }
     return may_call ? own_call(now_, siemens_call(text)) : nullptr;
   }
 
@@ -487,6 +496,7 @@ class Interpreter {
   bool is_bounded_text(std::string_view text) {
     const TextEffect effect = is_siemens() ? TextEffect::kAnything : text_effect(text);
     if (effect == TextEffect::kPlace) forget_position(now_);
+    if (effect == TextEffect::kSpindle) now_.modal.spindle_speed.reset();
     return effect != TextEffect::kAnything;
   }
 
@@ -749,6 +759,7 @@ class Interpreter {
   Diagnostics& found_;
   BlockDiagnostics diagnostics_;
   ControlState now_;
+  std::optional<ControlState> before_definition_;  // of a subprogram, in which the block stands
   SiemensVariables variables_;
   std::optional<double> least_by_control_;  // mm: of all that was told so far
   std::size_t silent_ = 0;  // so many blocks at the beginning say nothing to the control
@@ -759,7 +770,6 @@ class Interpreter {
 
 // Nothing of it is certain, and no word alone says what it seems to say.
 void make_all_opaque(const Program& program, Interpretation& read) {
-  std::optional<ControlState> before_definition_;  // of a subprogram, in which the block stands
   for (std::size_t i = 0; i < read.blocks.size(); ++i) {
     BlockMeaning& meaning = read.blocks[i];
     const Block& block = program.blocks[i];

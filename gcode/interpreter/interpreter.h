@@ -55,6 +55,7 @@ struct ReadOptions {
   // Most builds of the control leave out a block without a G, M or T word: what it would change is
   // unknown behind it.
   bool needs_commands = false;
+  bool names_blocks = false;             // NAT01 names a block, OPART the program: they do nothing
   bool centers_follow_distance = false;  // I J K are places under G90, offsets under G91
   // A program that others call is called under the modes of power-on. Otherwise nothing is known of
   // what it does not set itself, and its blocks are kept.

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "gcode/state/code_table.h"
 #include "gcode/text/characters.h"
 #include "gcode/text/number_format.h"
 
@@ -89,6 +90,61 @@ TextEffect effect_of_dollar_line(std::string_view said) {
   return number && value ? TextEffect::kNothing : TextEffect::kAnything;
 }
 
+// The letters and whole numbers of a line, without N; empty where it says anything else.
+struct WholeWord {
+  char letter = 0;
+  int number = 0;
+};
+
+std::vector<WholeWord> whole_words(std::string_view said) {
+  std::vector<WholeWord> words;
+  constexpr std::size_t kMostDigits = 6;
+  for (std::size_t at = 0; at < said.size();) {
+    const char letter = said[at++];
+    if (letter == ' ') continue;
+    if (letter == '$' && char_at(said, at) == '-') ++at;  // $-1: all spindles
+    const std::size_t end = std::min(said.find_first_not_of("0123456789", at), said.size());
+    if (end == at || end - at > kMostDigits) return {};
+    int number = 0;
+    for (; at < end; ++at) number = number * 10 + (said[at] - '0');
+    if (letter != 'N') words.push_back({letter, number});
+  }
+  return words;
+}
+
+// M3 $0 S1000, M5 $1
+bool is_for_one_spindle(std::string_view said) {
+  const std::vector<WholeWord> words = whole_words(said);
+  return !words.empty() && std::ranges::all_of(words, [](const WholeWord& word) {
+    const bool turns = word.letter == 'M' && word.number >= 3 && word.number <= 5;
+    return turns || word.letter == 'S' || word.letter == '$';
+  });
+}
+
+// M94/1/2, M26/Z: an M word that only switches something or asks for it.
+bool is_m_word_for(std::string_view said) {
+  const std::size_t slash = said.find('/');
+  if (slash == std::string_view::npos) return false;
+  const std::vector<WholeWord> words = whole_words(said.substr(0, slash));
+  if (words.size() != 1 || words[0].letter != 'M') return false;
+  const CodeAct act = row_of_m(words[0].number * 10).act;
+  const bool plain = std::ranges::all_of(
+      said.substr(slash), [](char c) { return is_letter(c) || is_digit(c) || c == '/'; });
+  return plain && (act == CodeAct::kBuilders || act == CodeAct::kSwitches);
+}
+
+// M0 Change the tool: two letters next to each other are no words.
+bool is_stop_with_text(std::string_view said) {
+  for (const std::string_view stop : {"M0 ", "M00 ", "M1 ", "M01 "}) {
+    const std::size_t text = stop.size();
+    if (said.starts_with(stop) && is_letter(char_at(said, text)) &&
+        is_letter(char_at(said, text + 1))) {
+      return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace
 
 TextEffect text_effect(std::string_view line) {
@@ -97,8 +153,30 @@ TextEffect text_effect(std::string_view line) {
     return TextEffect::kNothing;
   }
   if (said.starts_with('$')) return effect_of_dollar_line(said);
-  const bool is_shown = said.starts_with("M117 ") || said.starts_with("M118 ");
-  return is_shown ? TextEffect::kPlace : TextEffect::kAnything;
+  if (is_for_one_spindle(said)) return TextEffect::kSpindle;
+  const bool is_shown =
+      said.starts_with("M117 ") || said.starts_with("M118 ") || is_stop_with_text(said);
+  return is_shown || is_m_word_for(said) ? TextEffect::kPlace : TextEffect::kAnything;
+}
+
+bool is_letter_name(std::string_view line, char first) {
+  constexpr std::size_t kLongest = 5;
+  const std::string said = said_in(line);
+  return said.starts_with(first) && said.size() <= kLongest && is_letter(char_at(said, 1)) &&
+         std::ranges::all_of(said, [](char c) { return is_letter(c) || is_digit(c); });
+}
+
+std::string leading_name(std::string_view line) {
+  const std::string said = said_in(line);
+  std::size_t end = said.starts_with('#') ? 1 : 0;
+  while (is_letter(char_at(said, end)) || char_at(said, end) == '_' ||
+         (end > 1 && is_digit(char_at(said, end)))) {
+    ++end;
+  }
+  const std::size_t first = std::min(line.find_first_not_of(" \t"), line.size());
+  const char next = char_at(line, first + end);  // MSG(5) is no comment behind MSG
+  const bool ends = end == said.size() ? next != '(' : is_blank(next) || next == '[' || next == '"';
+  return end > 1 && ends ? said.substr(0, end) : std::string();
 }
 
 bool is_plain_text(std::string_view line) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <string_view>
 
 namespace batten::gcode {
@@ -16,15 +17,25 @@ namespace batten::gcode {
 
 // What a line that is no block of words can have changed, wherever it stands, on every control that
 // does not refuse it.
-enum class TextEffect : std::uint8_t { kNothing, kPlace, kAnything };
+enum class TextEffect : std::uint8_t { kNothing, kSpindle, kPlace, kAnything };
 
 //   [ROUGHING]           in brackets as a whole, without # and =: a comment of WinCNC      nothing
 //   $X $$ $# $G $I       grbl: unlocks, reports                                            nothing
 //   $110=500             grbl: a setting                                                   nothing
 //   $H $HX               grbl: homes                                                       place
-//   M117 Layer 3 of 10   printers: shown to people; the user's own on other controls       place
+//   M3 $0 S1000          LinuxCNC, grblHAL: of one of several spindles                     its
+//   speed M117 Layer 3 of 10   printers: shown to people; the user's own on other controls place M0
+//   Change the tool   printers: the same, and waits                                     place M94/1
+//   M26/Z         Centroid: what an M word is for                                   place
 // Anything for all else, which may be a macro's name or a statement of another language.
 [[nodiscard]] TextEffect text_effect(std::string_view line);
+
+// Okuma's name of a block or a program: N or O, a letter, and up to three letters or digits.
+[[nodiscard]] bool is_letter_name(std::string_view line, char first);
+
+// "SET_PIN" of `SET_PIN PIN=fan VALUE=1`, "#MSG" of `#MSG["text"]`, in capitals: the name with
+// which a line of the RS-274 family begins that is no block of words; empty where there is none.
+[[nodiscard]] std::string leading_name(std::string_view line);
 
 // Whether the line is the place of the program's number, for the operator to fill in: N9XXX, as
 // FreeCAD's post for Philips controls writes it.

@@ -151,11 +151,12 @@ bool names_flow(const Word& word) {
 class FlowFinder {
  public:
   FlowFinder(const Program& program, Returns returns, const OwnWords* own,
-             const Subprograms* called)
+             const Subprograms* called, bool names_blocks)
       : program_(program),
         returns_(returns),
         own_(own),
         called_files_(called),
+        names_blocks_(names_blocks),
         flow_(program.blocks.size()) {}
 
   ProgramFlow find() {
@@ -163,8 +164,10 @@ class FlowFinder {
     close_segment(program_.blocks.size());
     judge_calls();
     const bool refers = !jump_targets_.empty() || any_label_ || !contours_.empty();
-    reaches_out_ |= refers;
+    reaches_out_ |= refers || by_name_;
     if (refers) mark_blocks_referred_to();
+    for (const std::size_t i : named_) flow_[i].jump_target |= by_name_;
+    for (const auto& [first, last] : definitions_) mark_definition(first, last);
     return {std::move(flow_), reaches_out_};
   }
 
@@ -172,10 +175,10 @@ class FlowFinder {
   void read_block(std::size_t i) {
     const Block& block = program_.blocks[i];
     if (block.opacity == ParseStatus::kProgramMark) {
+      defined_.clear();  // a % ends the program
       note_program(find_word(program_.words_of(block), 'O'));
       return;
     }
-      defined_.clear();  // a % ends the program
     const auto words = program_.words_of(block);
     if (block.opacity == ParseStatus::kNone && program_.language == Language::kRs274 &&
         std::ranges::none_of(words, names_flow)) {
@@ -196,12 +199,13 @@ class FlowFinder {
     const std::string_view text = program_.source.text(program_.blocks[i].span);
     const std::string bare = bare_words(text);
     find_jumps(bare);
+    if (names_blocks_ && is_letter_name(text, 'N')) return named_.push_back(i);
     note_hidden_call(program_.blocks[i].opacity, text, bare);
+    follow_definition(i, bare);
     if (!is_flow) return;
     if (is_program_number(bare)) {
       close_segment(i);
       note_program(find_word(program_.words_of(program_.blocks[i]), 'O'));
-    follow_definition(i, bare);
     }
     const int step = body_step(bare);
     reaches_out_ |= step != 0;
@@ -209,10 +213,6 @@ class FlowFinder {
     depth_ = std::max(0, depth_ + step);
   }
 
-  static std::optional<Label> leading_label(std::string_view text) {
-    const std::size_t at = std::min(text.find_first_not_of("/ \t"), text.size());
-    return upper(char_at(text, at)) == 'N' ? number_at(text, at + 1) : std::nullopt;
-  }
   // From o100 sub to o100 endsub, where nothing between them can end the definition or be another.
   void follow_definition(std::size_t i, std::string_view bare) {
     const std::string_view keyword = o_word_keyword(bare);
@@ -245,6 +245,10 @@ class FlowFinder {
     flow_[last].in_definition = InDefinition::kLast;
   }
 
+  static std::optional<Label> leading_label(std::string_view text) {
+    const std::size_t at = std::min(text.find_first_not_of("/ \t"), text.size());
+    return upper(char_at(text, at)) == 'N' ? number_at(text, at + 1) : std::nullopt;
+  }
 
   static std::optional<Label> number_at(std::string_view text, std::size_t at) {
     constexpr std::size_t kMaxDigits = 15;
@@ -258,6 +262,7 @@ class FlowFinder {
 
   // GOTO 100, GOTO N100, IF [..] N100. A computed target can be any label.
   void find_jumps(std::string_view bare) {
+    by_name_ |= names_blocks_ && (contains(bare, "GOTO") || contains(bare, "IF"));  // IF [..] NAT01
     for (std::size_t at = bare.find("GOTO"); at != std::string_view::npos;
          at = bare.find("GOTO", at + 4)) {
       std::size_t to = at + 4;
@@ -416,22 +421,23 @@ class FlowFinder {
   Returns returns_;
   const OwnWords* own_;
   const Subprograms* called_files_;
+  bool names_blocks_;
   std::vector<BlockFlow> flow_;
   std::unordered_set<Label> jump_targets_;
   std::unordered_set<Label> programs_;        // that stand here
   std::vector<std::optional<Label>> called_;  // nothing: by a name or a computed number
   std::vector<std::pair<Label, Label>> contours_;
+  std::vector<std::pair<std::size_t, std::size_t>> definitions_;  // first and last block
+  std::string defined_;  // O100, O<PART>: of the definition that is not over; empty: none
+  std::size_t definition_begin_ = 0;
+  std::vector<std::size_t> named_;  // blocks that are names, for jumps (Okuma)
+  bool by_name_ = false;            // jumps may name them
   bool any_label_ = false;
   int depth_ = 0;
   std::size_t segment_begin_ = 0;
   bool segment_is_subprogram_ = false;
   bool is_left_early_ = false;  // by an M99 before the last one, or one that names a block
   std::size_t last_block_ = 0;  // with M99
-  std::vector<std::pair<std::size_t, std::size_t>> definitions_;  // first and last block
-  std::string defined_;  // O100, O<PART>: of the definition that is not over; empty: none
-  std::size_t definition_begin_ = 0;
-  std::vector<std::size_t> named_;  // blocks that are names, for jumps (Okuma)
-  bool by_name_ = false;            // jumps may name them
   bool says_more_ = false;
   bool cuts_ = false, says_plane_ = false, says_units_ = false, says_distance_ = false,
        says_cutter_ = false, changes_tool_ = false;
@@ -453,11 +459,11 @@ std::string o_word_call(std::string_view text) {
 }
 
 ProgramFlow follow_flow(const Program& program, Returns returns, const OwnWords* own,
-                        const Subprograms* called) {
+                        const Subprograms* called, bool names_blocks) {
   if (program.language == Language::kKlartext) return {find_klartext_flow(program), true};
   if (program.language == Language::kSiemens)
     return {find_siemens_flow(program, returns, own, called), true};
-  return FlowFinder(program, returns, own, called).find();
+  return FlowFinder(program, returns, own, called, names_blocks).find();
 }
 
 FlowEffect flow_effect(std::string_view text) {

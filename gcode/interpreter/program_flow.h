@@ -19,9 +19,10 @@ namespace batten::gcode {
 [[nodiscard]] std::string o_word_call(std::string_view text);
 
 // A jump to a computed label makes every block with an N number a target. `own`, `called`: calls
-// that the user or their files say something of; nullptr: none.
+// that the user or their files say something of; nullptr: none. `names_blocks`: ReadOptions.
 [[nodiscard]] ProgramFlow follow_flow(const Program& program, Returns returns,
                                       const OwnWords* own = nullptr,
-                                      const Subprograms* called = nullptr);
+                                      const Subprograms* called = nullptr,
+                                      bool names_blocks = false);
 
 }  // namespace batten::gcode

@@ -205,7 +205,8 @@ class WordApplier {
       return take_own(row.act == CodeAct::kCalls ? row.why : reason::kOwnWord, false);
     }
     apply_traits(row);
-    if (row.act == CodeAct::kMirrors) modal().mirror = row.value.as<TriState>();
+    const bool may_mirror = (state_.lacks & mode::kMirror) == 0;
+    if (row.act == CodeAct::kMirrors && may_mirror) modal().mirror = row.value.as<TriState>();
     if (row.act == CodeAct::kTurnsToolTip) modal().tool_center_point = row.value.as<TriState>();
   }
 
@@ -232,8 +233,8 @@ class WordApplier {
         modal().motion = MotionMode::kUnknown;
         return;
       default:
-        return;
         state_.work_offset = 0;  // on some controls these are offsets beside G54
+        return;
     }
   }
 
@@ -248,12 +249,12 @@ class WordApplier {
 
   void apply_rotation(const CodeRow& row) {
     if (row.is(trait::kTilts)) return set_frame(row, modal().tilted_plane);
-    if (is_off(row)) {
     if (row.value.as<TriState>() == TriState::kUnknown) {
       if (!words_.has_any("XYZP")) return;
       effect_.takes_axes = true;
       return set_frame(row, modal().rotation);
     }
+    if (is_off(row)) {
       CodeRow tilting = row;
       tilting.why = reason::kTiltedPlane;
       set_frame(tilting, modal().tilted_plane);

@@ -91,6 +91,14 @@ End after_computed_value(std::string_view text, std::size_t at) {
                     : after_function(text, at);
 }
 
+// HA, DB: Okuma's offsets of the tool in the spindle, of its set A, B or C.
+bool is_offset_of_tool(std::string_view text, std::size_t at) {
+  const char letter = upper(char_at(text, at));
+  const char set = upper(char_at(text, at + 1));
+  return (letter == 'H' || letter == 'D') && set >= 'A' && set <= 'C' &&
+         !is_name_character(char_at(text, at + 2));
+}
+
 // R5, R[1], as Siemens names its parameters.
 End after_r_parameter(std::string_view text, std::size_t at) {
   if (upper(char_at(text, at)) != 'R') {
@@ -228,6 +236,11 @@ const Token& LineLexer::letter_token() {
   }
   if (c == '#' || c == '[' || (is_letter(c) && after_function(text_, value))) {
     return value_word(letter, value);
+  }
+  if (at_ > begin_ && is_offset_of_tool(text_, at_)) {
+    take(TokenKind::kValueWord, at_ + 2);
+    token_.letter = letter;
+    return token_;
   }
   if (value == at_ + 1 && is_name_character(c)) {
     return keyword();
@@ -385,8 +398,8 @@ const Token& LineLexer::corner_word() {
   const std::size_t letter_at = after_blanks(text_, at_ + 1);
   const char letter = upper(char_at(text_, letter_at));
   const std::size_t value = after_blanks(text_, letter_at + 1);
-  if (letter != 'R' && letter != 'C' && letter != 'A') {
-    return unreadable(at_, "a comma without a corner word (,R ,C ,A)");
+  if (std::string_view("RCAK").find(letter) == std::string_view::npos) {
+    return unreadable(at_, "a comma without a corner word (,R ,C ,A ,K)");
   }
   const auto scanned =
       value < text_.size() ? scan_number(text_.substr(value)) : std::optional<ScannedNumber>();

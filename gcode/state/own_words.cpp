@@ -32,7 +32,7 @@ std::span<const OwnEffectRow> own_effects() { return kOwnEffects; }
 
 bool may_choose_zero(const CodeRow& row) {
   return row.group == CodeGroup::kScaling || row.group == CodeGroup::kWorkOffset ||
-         row.act == CodeAct::kMovesOrigin;
+         row.act == CodeAct::kMovesOrigin || row.act == CodeAct::kMachinePlace;
 }
 
 std::string numbered_call(const BlockWords& words) {

@@ -40,8 +40,8 @@ struct OwnWord {
   OwnEffect effect;
 };
 
-// A word of scales and origins that on some controls chooses a zero point: all that a user may say
-// of it is that the position is unknown behind it.
+// A word of scales and origins that on some controls chooses a zero point, or none: all that a user
+// may say of it is that the position is unknown behind it.
 [[nodiscard]] bool may_choose_zero(const CodeRow& row);
 
 // Whether a user may say what a G word does: that, a call, or a word that Batten does not know.
@@ -60,7 +60,7 @@ class OwnWords {
 
   [[nodiscard]] std::span<const OwnWord> all() const { return words_; }
   // nullptr: nothing is said of it. Names: M501, G100.1; of calls M98 P9001, M198 P9001, G65 P9810,
-  // O<NAME> CALL, O100 CALL, L54, NAME, CALL PGM NAME.
+  // O<NAME> CALL, O100 CALL, L54, NAME, CALL PGM NAME; #MSG of a control's own.
   [[nodiscard]] const OwnWord* find(std::string_view name) const;
   // Of a word of this block: of its call where the code is one.
   [[nodiscard]] const OwnWord* find(char letter, Code code, const BlockWords& words) const;

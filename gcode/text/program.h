@@ -12,7 +12,7 @@ namespace batten::gcode {
 
 // A letter and its value, as `X-.5`.
 struct Word {
-  // Upper case, 'A' to 'Z'; or ',' for a corner word (,R2 ,C1 ,A45), whose block is
+  // Upper case, 'A' to 'Z'; or ',' for a corner word (,R2 ,C1 ,A45 ,K50), whose block is
   // ParseStatus::kCornerWord.
   char letter = 0;
   std::uint8_t decimals = 0;  // digits after the point as written

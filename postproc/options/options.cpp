@@ -254,28 +254,33 @@ const gcode::CurveFormat* curves_read(const gcode::Control& target, gcode::Sourc
   return understood ? written_for->curves : nullptr;
 }
 
+// What the user says of a word goes first.
+std::shared_ptr<const gcode::OwnWords> with_words_of(const gcode::Control& target,
+                                                     std::shared_ptr<const gcode::OwnWords> said) {
+  if (target.own_words.empty()) return said;
+  std::vector<gcode::OwnWord> words;
+  if (said != nullptr) words.assign(said->all().begin(), said->all().end());
+  for (const auto& [name, effect] : target.own_words) {
+    const auto row = std::ranges::find(gcode::own_effects(), effect, &gcode::OwnEffectRow::name);
+    words.push_back({std::string(name), std::string(effect), row->effect});
+  }
+  return std::make_shared<const gcode::OwnWords>(std::move(words));
+}
+
 }  // namespace
 
 void read_as(const gcode::Control* target, gcode::SourceKind source, gcode::ReadOptions& reading) {
   if (target == nullptr) return;
   reading.curves = curves_read(*target, source);
   const bool is_auto = source == gcode::SourceKind::kAuto;
-  if (is_auto || gcode::control_of(source) == target->name) reading.lacks = target->lacks;
+  if (is_auto || gcode::control_of(source) == target->name) {
+    reading.lacks = target->lacks;
+    reading.own_words = with_words_of(*target, reading.own_words);
+  }
   if (!is_auto) return;
   reading.needs_commands = target->needs_commands;
+  reading.names_blocks = target->names_blocks;
   reading.centers_follow_distance = target->centers_follow_distance;
-  if (target->zero_points.empty()) return;
-  std::vector<gcode::OwnWord> words;
-  if (reading.own_words != nullptr) {
-    const auto said = reading.own_words->all();
-    words.assign(said.begin(), said.end());
-  }
-  const auto row =
-      std::ranges::find(gcode::own_effects(), "position unknown", &gcode::OwnEffectRow::name);
-  for (const int code : target->zero_points) {
-    words.push_back({fmt::format("G{}", code / 10), std::string(row->name), row->effect});
-  }
-  reading.own_words = std::make_shared<const gcode::OwnWords>(std::move(words));
 }
 
 gcode::ReadOptions read_options_of(const SmoothOptions& options) {

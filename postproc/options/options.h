@@ -126,8 +126,7 @@ struct SmoothOptions {
 
 // Sets how a program for this target is read; nullptr: one for any. What only that control has or
 // lacks counts where the program was written for no other. A target without curves of its own gets
-// those of the control that the program was written for. Its zero points are added to the own
-// words.
+// those of the control that the program was written for. Its own words are added.
 void read_as(const gcode::Control* target, gcode::SourceKind source, gcode::ReadOptions& reading);
 
 // Whether they say that programs that others call are called under the modes of power-on (reason

@@ -26,11 +26,30 @@ TEST(Title, IsWordsThatNoControlTakesForACommand) {
                            "N9XXX (, 2026-11-25 22:46)", "oxxxx"}) {
     EXPECT_TRUE(is_title(line)) << line;
   }
-  for (const char* line : {"", "PART", "START_PRINT", "START_PRINT BED=60", "TRANS X10 Y5",
-                           "ROT RPL 30", "CYCL DEF 7.0", "PLANE RESET STAY", "Call subprogram 5",
-                           "MODIN O100", "#RTCP ON", "part X10", "G91 mode on", "TRANS DATUM",
-                           "10 L X5", "SET_VELOCITY_LIMIT ACCEL=500", "TOOL CALL 1 Z",
-                           "N9X", "N9 XXX", "N9XXXY", "N10X5", "NXX.5", "XXX", "M9XXX"}) {
+  for (const char* line : {"",
+                           "PART",
+                           "START_PRINT",
+                           "START_PRINT BED=60",
+                           "TRANS X10 Y5",
+                           "ROT RPL 30",
+                           "CYCL DEF 7.0",
+                           "PLANE RESET STAY",
+                           "Call subprogram 5",
+                           "MODIN O100",
+                           "#RTCP ON",
+                           "part X10",
+                           "G91 mode on",
+                           "TRANS DATUM",
+                           "10 L X5",
+                           "SET_VELOCITY_LIMIT ACCEL=500",
+                           "TOOL CALL 1 Z",
+                           "N9X",
+                           "N9 XXX",
+                           "N9XXXY",
+                           "N10X5",
+                           "NXX.5",
+                           "XXX",
+                           "M9XXX"}) {
     EXPECT_FALSE(is_title(line)) << line;
   }
 }
@@ -76,6 +95,23 @@ const EffectRow kEffectRows[] = {
     {"$H", TextEffect::kPlace},
     {"$hz", TextEffect::kPlace},
     {"M117 Layer 3/10", TextEffect::kPlace},
+    {"M0 Change the tool", TextEffect::kPlace},
+    {"M01 put in T2", TextEffect::kPlace},
+    {"M94/1", TextEffect::kPlace},
+    {"N20 m26/Z", TextEffect::kPlace},
+    {"M3 $0 S1000", TextEffect::kSpindle},
+    {"N5 m5 $-1", TextEffect::kSpindle},
+    // More than a switch, and more than a spindle.
+    {"M98/1", TextEffect::kAnything},
+    {"M30/1", TextEffect::kAnything},
+    {"M115/Z P-10 F50", TextEffect::kAnything},
+    {"G91/1", TextEffect::kAnything},
+    {"G91 M94/1", TextEffect::kAnything},
+    {"M6 $0", TextEffect::kAnything},
+    {"M3 $0 G91", TextEffect::kAnything},
+    {"M0 G91 x", TextEffect::kAnything},
+    {"M0 $x", TextEffect::kAnything},
+    {"M2 Ready", TextEffect::kAnything},
     // What these could be: a line that grbl runs at each start, a jog that moves, a switch of the
     // coordinates, another channel, a macro, a setting of another language, an assignment.
     {"$N0=G91", TextEffect::kAnything},
@@ -106,8 +142,53 @@ TEST(TextEffects, LeaveModesAsTheyWereAnywhere) {
     const tests::Interpreted it(std::string(kModesSaid) + kFirstCut + row.line + "\nG1 X3 F200\n");
     EXPECT_EQ(is_known(it.last_state()), row.effect != TextEffect::kAnything);
     if (row.effect == TextEffect::kAnything) continue;
-    const bool place = row.effect == TextEffect::kNothing;
+    const bool place = row.effect != TextEffect::kPlace;
     EXPECT_EQ(it.read.motions.back().start_known, place);
+  }
+}
+
+// S of another spindle is no speed of this one.
+TEST(TextEffects, OfSpindlesLeaveNoSpeedKnown) {
+  const tests::Interpreted it("G21 S1000\nM3 $1 S500\n");
+  EXPECT_FALSE(it.last_state().spindle_speed.has_value());
+}
+
+TEST(LeadingName, IsWhatALineOfNamesBeginsWith) {
+  EXPECT_EQ(leading_name("set_pin PIN=fan VALUE=1"), "SET_PIN");
+  EXPECT_EQ(leading_name("#MSG[\"text\"]"), "#MSG");
+  EXPECT_EQ(leading_name("msg \"text\" ; more"), "MSG");
+  for (const char* line : {"", "X", "M5 x", "#100", "MSG(5)", "MSG=5", "$MSG", "\"MSG\""}) {
+    EXPECT_EQ(leading_name(line), "") << line;
+  }
+}
+
+TEST(LetterName, IsShortAndBeginsWithALetter) {
+  for (const char* line : {"NAT01", "na", "NA1 (second tool)"}) {
+    EXPECT_TRUE(is_letter_name(line, 'N')) << line;
+  }
+  for (const char* line : {"N1", "NAT012", "NA 1", "N", "OAB", "NA=1", "NA:"}) {
+    EXPECT_FALSE(is_letter_name(line, 'N')) << line;
+  }
+}
+
+bool named_blocks_do_nothing(const std::string& text) {
+  ReadOptions options;
+  options.names_blocks = true;
+  const tests::Interpreted it(text, options);
+  return !it.read.motions.empty() && it.read.motions.back().start_known &&
+         is_known(it.last_state());
+}
+
+// NAT01 is a name to jump to on Okuma, OPART that of the program.
+TEST(LetterName, DoesNothingWhereNothingJumpsToIt) {
+  const std::string cuts = std::string(kModesSaid) + kFirstCut;
+  EXPECT_FALSE(named_blocks_do_nothing("N1 G0\nOPART\n" + cuts));
+  EXPECT_TRUE(named_blocks_do_nothing("%\nOPART (left)\n" + cuts));
+  EXPECT_TRUE(named_blocks_do_nothing(cuts + "NAT01\nX2\n"));
+  EXPECT_TRUE(named_blocks_do_nothing("N10 G17\n" + cuts + "NAT01\nX2\n")) << "no call";
+  EXPECT_FALSE(cuts_are_known(cuts + "NAT01\nX2\n"));
+  for (const char* jump : {"GOTO NAT01", "IF [V1 EQ 2] NAT01", "N5 GOTO NAT01"}) {
+    EXPECT_FALSE(named_blocks_do_nothing(cuts + "NAT01\nX2\n" + jump + "\n")) << jump;
   }
 }
 

@@ -88,7 +88,14 @@ const SplitCase kSplitWordsRows[] = {
     {"X1 , c -.5 Y2", {"X1", "corner , c -.5", "Y2"}},
     {",A#1", {"corner ,A#1"}},
     {"X1,R", {"X1", "unreadable ,R"}},
+    {"G61.1 ,K50", {"G61.1", "corner ,K50"}},
     {",L5", {"unreadable ,L5"}},
+    // Okuma: offsets of the tool in the spindle
+    {"G56 HA Z5", {"G56", "value HA", "Z5"}},
+    {"G41 db", {"G41", "value db"}},
+    {"HA", {"foreign HA"}},
+    {"G56 HALT", {"G56", "foreign HALT"}},
+    {"G56 HD", {"G56", "foreign HD"}},
     {"X1,", {"X1", "unreadable ,"}},
     // Values
     {"X[#1+2]Y3", {"value X[#1+2]", "Y3"}},

@@ -24,6 +24,9 @@ const BoundedRow kBoundedRows[] = {
     {"$H", true},
     {"$110=500", true},
     {"M117 Layer 2/3", true},
+    {"M0 Change the tool", true},
+    {"M94/1", true},
+    {"M3 $0 S1000", true},
     {"M55", true},
     {"M101", true},
     {"X1 X2", true},
@@ -50,7 +53,8 @@ const BoundedRow kBoundedRows[] = {
     {"[SECOND PASS] G91", false},
     {"G777", false},
     {"M98 P1", false},
-    {"L54", false},  // a subprogram of Sinumerik
+    {"L54", false},      // a subprogram of Sinumerik
+    {"G11 P30", false},  // of Okuma
 };
 
 TEST(BoundedBlocks, LoseOnlyWhatTheyCanHaveChanged) {
@@ -69,9 +73,38 @@ TEST(BoundedBlocks, LoseOnlyWhatTheyCanHaveChanged) {
 std::size_t rewritten_behind(const std::string& block, const std::vector<std::string>& words,
                              const SmoothOptions& options, const std::string& units = "G21") {
   const std::string wave = joined(wave_lines({}), "\n");
-  const std::string text = head(units) + "G94 G40\n" + wave + "G0 Z5\n" + block + "\n" +
-                           joined(words, "\n") + "G0 X0 Y0 Z5\nG1 Z-1 F300\n" + wave + tail();
+  std::string text = head(units) + "G94 G40\n" + wave + "G0 Z5\n" + block + "\n" +
+                     joined(words, "\n") + "G0 X0 Y0 Z5\nG1 Z-1 F300\n" + wave + tail();
+  if (options.target->needs_commands) {
+    for (std::size_t at = text.find("\nX"); at != std::string::npos; at = text.find("\nX", at)) {
+      text.insert(at + 1, "G1 ");
+    }
+  }
   return rewritten_runs(smoothed(text, options));
+}
+
+TEST(BoundedBlocks, OfADefinitionOfLinuxcncChangeNothing) {
+  const SmoothOptions options = options_for("linuxcnc");
+  EXPECT_EQ(rewritten_behind("o<a> sub\nG91 G20 G41\no<a> endsub", {}, options), 2U);
+  EXPECT_EQ(rewritten_behind("o<a> sub\nG91\no<a> endsub\no<a> call", {}, options), 1U);
+}
+
+// What a control's own words do is known in programs for it, and in no others.
+TEST(BoundedBlocks, OfOwnWordsOfAControlAreKnownInItsProgramsAlone) {
+  for (const gcode::Control& control : gcode::controls()) {
+    for (const auto& [name, effect] : control.own_words) {
+      SCOPED_TRACE(control.name + ": " + std::string(name));
+      SmoothOptions options = options_for(control.name);
+      options.units = gcode::Units::kMillimetre;
+      const std::string units = gcode::other_meaning(control, 210).empty() ? "G21" : "G71";
+      const std::string block = std::string(name) + (name.starts_with("#") ? "[]" : "");
+      EXPECT_EQ(rewritten_behind(block, {}, options, units), 2U);
+      const bool known_to_all = name == "G51" || name == "G52" || name == "G53";
+      options.target = gcode::find_control("smoothieware");
+      if (known_to_all) continue;
+      EXPECT_LE(rewritten_behind(block, {}, options), 1U);
+    }
+  }
 }
 
 // With any one of the words left out nothing is.
