@@ -38,13 +38,15 @@ std::vector<Control> fanuc_family() {
   Control mitsubishi = fanuc_like(
       "mitsubishi", "Mitsubishi M700V: arcs and helices; G06.2 in G05 P10000 under --output curves",
       mitsubishi_curves());
-  // The tool turns into the tilted plane; the axes are kept out of a zone.
+  // The tool turns into the tilted plane; the axes are kept out of a zone; to a reference point,
+  // and back.
   fanuc.own_words = {{"G53.1", "position unknown"},
-                     {"G53.6", "position unknown"},
                      {"G22", "keeps state"},
-                     {"G23", "keeps state"}};
-  mitsubishi.own_words = {
-      {"G53.1", "position unknown"}, {"G22", "keeps state"}, {"G23", "keeps state"}};
+                     {"G23", "keeps state"},
+                     {"G27", "moves"},
+                     {"G29", "moves"}};
+  mitsubishi.own_words = fanuc.own_words;
+  fanuc.own_words.push_back({"G53.6", "position unknown"});
   return {fanuc, syntec, mitsubishi};
 }
 

@@ -9,10 +9,11 @@ constexpr SourceMarks kMacro = mark(SourceMark::kMacroFlow);
 constexpr SourceMarks kFanucLike = kMacro | mark(SourceMark::kHighSpeedMode);
 
 constexpr std::string_view kElsewhere = "position unknown";
+constexpr std::string_view kAsBefore = "keeps state";
 
 // Work offsets, and those that follow the table (G254); how many blocks are read ahead.
 std::vector<ControlWord> words_of_haas() {
-  std::vector<ControlWord> words = {{"G103", "keeps state"}};
+  std::vector<ControlWord> words = {{"G103", kAsBefore}, {"G29", "moves"}};
   for (const std::string_view name :
        {"G110", "G111", "G114", "G115", "G116", "G117", "G118", "G119", "G120", "G121", "G122",
         "G123", "G124", "G125", "G126", "G127", "G128", "G129", "G154", "G254", "G255"}) {
@@ -82,25 +83,29 @@ std::vector<Control> machining_center_family() {
       "mazak", "Mazak EIA: arcs and helices in G17, G18, G19; decimal point always", kFanucLike,
       {"before-run = [\"G61.1\"]  # geometry compensation; from memory, ask your manual",
        "after-run = [\"G64\"]"});
-  mazak.own_words = {{"G53.1", kElsewhere}};  // turns the tool into the tilted plane
+  // The tool turns into the tilted plane; to a reference point, and back.
+  mazak.own_words = {{"G53.1", kElsewhere}, {"G27", "moves"}, {"G29", "moves"}};
 
   Control okuma = machining_center(
       "okuma", "Okuma OSP: arcs and helices in G17, G18, G19; decimal point always",
-      mark(SourceMark::kSuperNurbs),
+      mark(SourceMark::kSuperNurbs) | mark(SourceMark::kHaasSmoothness),  // G187: a tolerance, too
       {"before-run = [\"G131 F5000 J1 E{tolerance}\"]  # its numbers are the machine builder's",
        "after-run = [\"G130\"]"});
   okuma.smoothing_off = "G130";
   okuma.names_blocks = true;
   // G54 to G59 are tool lengths there, work offsets are G15 H.
   okuma.refused = "G43 G49 G54 G55 G56 G57 G58 G59 H";
-  okuma.own_words = {{"G53", kElsewhere}};  // ends them, for all blocks behind it
+  // G53 ends them, for all blocks behind it. Limits of travel, and the end of G187.
+  okuma.own_words = {
+      {"G53", kElsewhere}, {"G22", kAsBefore}, {"G23", kAsBefore}, {"G186", kAsBefore}};
 
   Control brother = machining_center(
       "brother", "Brother Speedio: arcs and helices in G17, G18, G19; decimal point always",
       kFanucLike,
       {"before-run = [\"M262\"]  # M260 series, high accuracy; from memory, ask your manual",
        "after-run = [\"M269\"]"});
-  brother.own_words = {{"G100", "moves"}};  // changes the tool on the way to X, Y and Z
+  // The tool changes on the way to X, Y and Z; to a reference point, and back.
+  brother.own_words = {{"G100", "moves"}, {"G27", "moves"}, {"G29", "moves"}};
 
   // ISNC takes I J K as offsets, BNC as places.
   Control hurco = machining_center(
@@ -115,7 +120,7 @@ std::vector<Control> machining_center_family() {
       mark(SourceMark::kHashCommand));
   fagor.smoothing_off = "";
   fagor.decimal_point = false;
-  fagor.own_words = {{"#MSG", "keeps state"}};  // shown to people
+  fagor.own_words = {{"#MSG", kAsBefore}};  // shown to people
   fagor.refused = kLengthByD;
   fagor.other_meanings = {{200, "no inch word on Fagor, whose units are G70 and G71"},
                           {210, "no millimetre word on Fagor, whose units are G70 and G71"}};

@@ -70,6 +70,8 @@ std::vector<Control> printer_family() {
   reprapfirmware.line_count = LineCount::kWithoutComments;
   reprapfirmware.not_in_comments = "{}\"";
 
+  reprapfirmware.own_words = {{"ECHO", "keeps state"}};
+
   // G18 and G19 came late, and their directions are not those of other controls: G17 alone.
   Control klipper = printer(
       "klipper",

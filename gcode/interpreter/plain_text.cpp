@@ -154,8 +154,11 @@ TextEffect text_effect(std::string_view line) {
   }
   if (said.starts_with('$')) return effect_of_dollar_line(said);
   if (is_for_one_spindle(said)) return TextEffect::kSpindle;
+  constexpr std::string_view kShown[] = {"M117 ", "M118 ", "M291 "};
   const bool is_shown =
-      said.starts_with("M117 ") || said.starts_with("M118 ") || is_stop_with_text(said);
+      is_stop_with_text(said) || std::ranges::any_of(kShown, [&said](std::string_view begin) {
+        return said.starts_with(begin);
+      });
   return is_shown || is_m_word_for(said) ? TextEffect::kPlace : TextEffect::kAnything;
 }
 

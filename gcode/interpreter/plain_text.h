@@ -19,14 +19,15 @@ namespace batten::gcode {
 // does not refuse it.
 enum class TextEffect : std::uint8_t { kNothing, kSpindle, kPlace, kAnything };
 
-//   [ROUGHING]           in brackets as a whole, without # and =: a comment of WinCNC      nothing
-//   $X $$ $# $G $I       grbl: unlocks, reports                                            nothing
-//   $110=500             grbl: a setting                                                   nothing
-//   $H $HX               grbl: homes                                                       place
-//   M3 $0 S1000          LinuxCNC, grblHAL: of one of several spindles                     its
-//   speed M117 Layer 3 of 10   printers: shown to people; the user's own on other controls place M0
-//   Change the tool   printers: the same, and waits                                     place M94/1
-//   M26/Z         Centroid: what an M word is for                                   place
+//   [ROUGHING]           in brackets as a whole, without # and =: a comment of WinCNC  nothing
+//   $X $$ $# $G $I       grbl: unlocks, reports                                        nothing
+//   $110=500             grbl: a setting                                               nothing
+//   M3 $0 S1000          LinuxCNC, grblHAL: of one of several spindles                 spindle
+//   $H $HX               grbl: homes                                                   place
+//   M117 Layer 3 of 10   printers: shown to people; the user's own elsewhere           place
+//   M291 P"Put in T2"    RepRapFirmware: the same                                      place
+//   M0 Put in T2         printers: the same, and waits                                 place
+//   M94/1  M26/Z         Centroid: what an M word is for                               place
 // Anything for all else, which may be a macro's name or a statement of another language.
 [[nodiscard]] TextEffect text_effect(std::string_view line);
 

@@ -279,10 +279,13 @@ class FlowFinder {
     }
   }
 
-  // M97 P, M99 P and M98 P.. H name a block; M98 P alone names a program.
+  // M97 P, M99 P and M98 P.. H name a block, and on Haas M96 P Q and M46 P Q, which jump by an
+  // input or a pallet; M98 P alone names a program.
   void read_calls(std::size_t i, std::span<const Word> words) {
     const bool ends_subprogram = has_code(words, 'M', 99, 99);
-    if (ends_subprogram || has_code(words, 'M', 97, 97)) add_target(find_word(words, 'P'));
+    if (ends_subprogram || has_code(words, 'M', 96, 97) || has_code(words, 'M', 46, 46)) {
+      add_target(find_word(words, 'P'));
+    }
     if (has_code(words, 'M', 98, 98)) add_target(find_word(words, 'H'));
     if (ends_subprogram) {
       is_left_early_ |= segment_is_subprogram_ || find_word(words, 'P') != nullptr;

@@ -95,6 +95,7 @@ const EffectRow kEffectRows[] = {
     {"$H", TextEffect::kPlace},
     {"$hz", TextEffect::kPlace},
     {"M117 Layer 3/10", TextEffect::kPlace},
+    {"M291 P\"T2\" S3", TextEffect::kPlace},
     {"M0 Change the tool", TextEffect::kPlace},
     {"M01 put in T2", TextEffect::kPlace},
     {"M94/1", TextEffect::kPlace},
