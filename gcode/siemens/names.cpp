@@ -293,6 +293,11 @@ constexpr std::array<std::string_view, 6> kNamesBesidePlainWords = {"POLY",    "
 // Of values, no words of a block: the radius of an arc, places in either mode.
 constexpr std::array<std::string_view, 3> kValueNames = {"CR", "AC", "IC"};
 
+// Codes of three digits that no other control has for something else.
+constexpr std::array<std::string_view, 13> kCodes = {"G500", "G505", "G506", "G507", "G601",
+                                                     "G602", "G603", "G641", "G642", "G643",
+                                                     "G644", "G645", "G710"};
+
 // The place behind a string, brackets or a value that starts here; the next character otherwise.
 std::size_t after_part(std::string_view text, std::size_t at) {
   if (text[at] == '"') {
@@ -319,6 +324,10 @@ bool has_siemens_name(std::string_view line) {
       if (!plain && (std::ranges::count(kValueNames, name) > 0 || is_known_siemens_name(name))) {
         return true;
       }
+    } else if (letters == 1) {
+      if (in_capitals(line.substr(at, 3)) == "T=\"") return true;  // a tool by its name
+      while (end < line.size() && is_digit(line[end])) ++end;
+      if (std::ranges::count(kCodes, in_capitals(line.substr(at, end - at))) > 0) return true;
     }
     const std::size_t close = line[at] == '<' ? line.find('>', at) : std::string_view::npos;
     at = letters > 0 ? end : close != std::string_view::npos ? close : after_part(line, at);

@@ -37,9 +37,9 @@ struct NamedEffect {
 [[nodiscard]] bool is_known_siemens_name(std::string_view name);
 
 // Whether a line of a text in whatever language has a known name of two letters or more outside of
-// comments, strings and brackets (< > too), or CR, AC or IC: MSG, TRANS, CYCLE832, FNORM .. Those
-// that a program of plain words gets by Batten (POLY with PO and PL, BSPLINE with SD and PW) do not
-// count.
+// comments, strings and brackets (< > too), or CR, AC or IC: MSG, TRANS, CYCLE832, FNORM ..; or
+// a code that it alone has (G642), or the name of a tool (T="MILL"). Names that a program of plain
+// words gets by Batten (POLY with PO and PL, BSPLINE with SD and PW) do not count.
 [[nodiscard]] bool has_siemens_name(std::string_view line);
 
 }  // namespace batten::gcode

@@ -52,14 +52,16 @@ TEST(SiemensNames, DecideForTargetsThatReadThem) {
   };
   for (const char* line :
        {"N10 G40 G17 G710 G94 G90 G60 G601 FNORM", "TRANS X10", "MSG(\"face\")", "cycle832(0.01)",
-        "G2 X1 Y1 CR=5", "X=IC(5)", "N20 MSG (\"x\") ; y", "T=\"BALL\" SUPA D1"}) {
+        "G2 X1 Y1 CR=5", "X=IC(5)", "N20 MSG (\"x\") ; y", "T=\"BALL\" SUPA D1", "G642",
+        "N5 G0 g500 X1", "G64G601", "T=\"MILL 6\""}) {
     const std::string text = "G90\nG1 X1 F100\n" + std::string(line) + "\nX2\n";
     EXPECT_EQ(language(text, Language::kSiemens), Language::kSiemens) << line;
     EXPECT_EQ(language(text, Language::kRs274), Language::kRs274) << line;
   }
   for (const char* line :
        {"(MSG, TRANS X10)", "; TRANS X10", "G1X1Y2Z3F100", "POLY X1 PO[X]=(1,2,3) F900",
-        "BSPLINE SD=3 X1 PL=2", "X1 PW=2", "#<trans>=5", "O100 CALL", "IF [#1 EQ 2] GOTO 10"}) {
+        "BSPLINE SD=3 X1 PL=2", "X1 PW=2", "#<trans>=5", "O100 CALL", "IF [#1 EQ 2] GOTO 10",
+        "G6421", "G64.2", "G154 P1", "G510", "(G642)", "#<t>=5", "X642 G64"}) {
     const std::string text = "G90\nG1 X1 F100\n" + std::string(line) + "\nX2\n";
     EXPECT_EQ(language(text, Language::kSiemens), Language::kRs274) << line;
   }
