@@ -150,7 +150,8 @@ class Interpreter {
     carry_.reaches_out |= whole_flow.reaches_out;
     // All of it is kept then, in whatever unit.
     const bool kept_for_caller =
-        !options_.usual_caller_modes && std::ranges::any_of(flow, &BlockFlow::in_called);
+        !options_.usual_caller_modes &&
+        std::ranges::any_of(flow, [](const BlockFlow& each) { return each.in_called; });
     if (!carry_.any_motion && !read_.motions.empty() && !kept_for_caller) {
       carry_.any_motion = true;
       carry_.first_motion = program_.blocks[read_.motions.front().block].span;

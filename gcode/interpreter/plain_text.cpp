@@ -198,6 +198,7 @@ bool is_open_number(std::string_view line) {
 bool is_title(std::string_view line) {
   if (is_open_number(line)) return true;
   const std::string said = said_in(line);
+  if (said.size() > 2 && said.starts_with('<') && said.find('>') == said.size() - 1) return true;
   const std::vector<std::string_view> words = split(said);
   return words.size() > 1 && words[0].size() > 1 && is_letter(words[0][0]) &&
          std::ranges::all_of(words, is_title_word);

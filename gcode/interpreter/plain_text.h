@@ -43,8 +43,8 @@ enum class TextEffect : std::uint8_t { kNothing, kSpindle, kPlace, kAnything };
 [[nodiscard]] bool is_open_number(std::string_view line);
 
 // Whether the line is a title: two or more words of letters and numbers of which none is a word of
-// RS-274 (X10) or begins a command of some control; or such a place. At the beginning of a program
-// only: further down it could be a macro's.
+// RS-274 (X10) or begins a command of some control; or such a place, or FANUC's name of a program,
+// <PART-1>. At the beginning of a program only: further down it could be a macro's.
 [[nodiscard]] bool is_title(std::string_view line);
 
 }  // namespace batten::gcode

@@ -20,11 +20,11 @@ enum class FlowEffect : std::uint8_t {
 enum class InDefinition : std::uint8_t { kNo, kFirst, kWithin, kLast };
 
 struct BlockFlow {
-  bool label_referenced = false;  // its N number is, or may be, named elsewhere
-  bool jump_target = false;       // control can come to it from another place
-  bool in_body = false;           // of a loop, a subprogram, or a contour that a cycle names
-  bool in_called = false;         // the whole program is one that others call
-  InDefinition in_definition = InDefinition::kNo;
+  bool label_referenced : 1 = false;  // its N number is, or may be, named elsewhere
+  bool jump_target : 1 = false;       // control can come to it from another place
+  bool in_body : 1 = false;           // of a loop, a subprogram, or a contour that a cycle names
+  bool in_called : 1 = false;         // the whole program is one that others call
+  InDefinition in_definition : 2 = InDefinition::kNo;
 };
 
 struct ProgramFlow {

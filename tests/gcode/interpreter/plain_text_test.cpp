@@ -23,7 +23,7 @@ TEST(PlainText, IsAFileNameOrInBrackets) {
 
 TEST(Title, IsWordsThatNoControlTakesForACommand) {
   for (const char* line : {"PART NUMBER 12345", "Bracket left side", "Mold insert rev. 2 (old)",
-                           "N9XXX (, 2026-11-25 22:46)", "oxxxx"}) {
+                           "N9XXX (, 2026-11-25 22:46)", "oxxxx", "<PART-1>", "<a_b.1> (left)"}) {
     EXPECT_TRUE(is_title(line)) << line;
   }
   for (const char* line : {"",

@@ -48,7 +48,8 @@ TEST(LexingTable, Comments) {
 TEST(LexingTable, Programs) {
   expect_kept({opaque("ProgramNumber", kFanuc, "O2000", "program-flow"),
                {"SecondProgram", kSiemens, "%_N_NEXT_SPF", "program-mark", false, "program-mark"},
-               opaque("Sub", kLinuxCnc, "o100 sub\no100 endsub", "program-flow"),
+               {"Sub", kLinuxCnc, "o100 sub\no100 endsub", "program-flow"},
+               opaque("OpenSub", kLinuxCnc, "o100 sub", "program-flow"),
                opaque("NamedCall", kLinuxCnc, "o<name> call [1] [2]", "subprogram"),
                opaque("If", kLinuxCnc, "o101 if [#1 GT 2]\no101 endif", "program-flow"),
                opaque("While", kLinuxCnc, "o102 while [#1 LT 2]\no102 endwhile", "program-flow"),
