@@ -128,8 +128,13 @@ bool is_m_word_for(std::string_view said) {
   const std::vector<WholeWord> words = whole_words(said.substr(0, slash));
   if (words.size() != 1 || words[0].letter != 'M') return false;
   const CodeAct act = row_of_m(words[0].number * 10).act;
-  const bool plain = std::ranges::all_of(
-      said.substr(slash), [](char c) { return is_letter(c) || is_digit(c) || c == '/'; });
+  // Numbers, and letters of axes without one: behind a slash on other controls stand words.
+  bool plain = true;
+  for (std::size_t at = slash + 1; at < said.size(); ++at) {
+    const bool is_new = said[at - 1] == '/';
+    const bool is_of_number = is_digit(said[at]) && (is_new || is_digit(said[at - 1]));
+    plain &= said[at] == '/' || is_of_number || (is_letter(said[at]) && is_new);
+  }
   return plain && (act == CodeAct::kBuilders || act == CodeAct::kSwitches);
 }
 

@@ -108,6 +108,7 @@ const EffectRow kEffectRows[] = {
     {"M115/Z P-10 F50", TextEffect::kAnything},
     {"G91/1", TextEffect::kAnything},
     {"G91 M94/1", TextEffect::kAnything},
+    {"M94/G2X10", TextEffect::kAnything},
     {"M6 $0", TextEffect::kAnything},
     {"M3 $0 G91", TextEffect::kAnything},
     {"M0 G91 x", TextEffect::kAnything},
