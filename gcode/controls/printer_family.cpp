@@ -59,7 +59,8 @@ std::vector<Control> printer_family() {
                             "read only by builds with inch support; others run the numbers as "
                             "millimetres. Post the program in millimetres"}};
   marlin.curves = &chopped_g5();
-  marlin.own_words = {{"G29", "moves"}};  // looks for the bed
+  // Looks for the bed; a loop begins or ends, into whose blocks more than one way leads.
+  marlin.own_words = {{"G29", "moves"}, {"M808", "moves"}};
 
   Control reprapfirmware = printer("reprapfirmware",
                                    "RepRapFirmware 3: arcs and helices in G17, G18, G19 where its "

@@ -14,7 +14,7 @@ class SiemensReader(PlainReader):
     PATH = {"G60", "G64", "G641", "G642", "G643", "G644", "G645"}
     ON = {"COMPON": "compressor", "COMPCURV": "compressor", "COMPCAD": "compressor", "TRAORI": "transformation",
           "ROT": "rotation", "AROT": "rotation", "SCALE": "scaling", "MIRROR": "mirror"}
-    PIECE = re.compile(rf"(PO\[[XYZ]?\]|PL|PW|SD|CR|[A-Z])=({ARGUMENTS}|[A-Z]+{ARGUMENTS}|[A-Z0-9_.+*/-]+)|([A-Z])({NUMBER})"
+    PIECE = re.compile(rf"(PO\[[XYZ]?\]|PL|PW|SD|CR|RPL|[A-Z])=({ARGUMENTS}|[A-Z]+{ARGUMENTS}|[A-Z0-9_.+*/-]+)|([A-Z])({NUMBER})"
                        rf"|([A-Z_][A-Z_][A-Z0-9_]*)({ARGUMENTS})?")
 
     def __init__(self, text, effect="nothing", inch=None, kind="siemens"):
