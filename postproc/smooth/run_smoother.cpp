@@ -31,6 +31,9 @@ struct RunTuning {
   double more_room = 3;
   double side_margin = 0.25;  // of the form's share, on the side where the run must not be cut
   double far_fewer = 0.7;     // of the blocks that there were
+  // Part of the time, of a run of corners: the least that there must be left to win by a curve that
+  // rounds them. Nothing brakes in the bound of the time, and all of them do.
+  double left_at_corners = 0.07;
   double sharp_corner = 30 * geometry::kPi / 180;  // radians: corners that turn more may stay
   // So many of the pieces are reverted at once that a long run is timed a few times only.
   std::size_t reverted_share = 4;
@@ -221,6 +224,11 @@ class RunSmoother {
   // or the target is told curves, or a form in far fewer blocks is slower.
   [[nodiscard]] bool is_worth_rounding() const {
     if (options().prefer == Prefer::kAccuracy) return false;
+    const double left = 1 - bounds_.least_time() / best_time();
+    if (corner_part() >= kBounds.corners && left < kRun.left_at_corners &&
+        !wants_few_moves(options())) {
+      return false;
+    }
     if (rounding_is_worth_trying(bounds_.least_time(), best_time())) return true;
     const Selection so_far = choose(result_, options());
     if (!so_far.order.empty()) return false;
@@ -296,7 +304,8 @@ WorthAPlan worth_a_plan(const Run& run, const RunContext& context, const SmoothO
   const double alone =
       cutting_time(timed_pieces(run, 0, run.points.size() - 1), machine, context.after.path);
   const double least = least_time(run, tolerance, machine, options.tolerance_kind);
-  return tube_is_worth_trying(run.points.size(), least, alone) ? WorthAPlan{} : kForms;
+  return tube_is_worth_trying(run.points.size(), least, alone) ? WorthAPlan{.share = kForms.share}
+                                                               : kForms;
 }
 
 }  // namespace

@@ -140,7 +140,7 @@ std::size_t memory_of(const BattenFolder& folder, const std::string& command) {
 // Rows of two hundred blocks, and twice as many: no more memory than some bytes of each block, for
 // the report of its run. Held as a whole a block takes some hundred.
 constexpr std::size_t kRows = 1000;
-constexpr std::size_t kForReport = kRows * 200 * 15;
+constexpr std::size_t kForReport = kRows * 200 * 20;
 
 // What is mapped counts as memory, too, of `verify` for two programs; `inspect` keeps two sections
 // of each row.

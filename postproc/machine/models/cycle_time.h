@@ -69,7 +69,7 @@ enum class WithPositions { kNo, kYes };
 // least-time plan (planned_chain.h) tells its time, with kQuickPlanDensity.
 [[nodiscard]] bool takes_a_plan(const StretchChain& chain, double time);
 
-// Which chains are worth the work of a plan, some 0.3 ms a piece.
+// Which chains are worth the work of a plan, some 0.1 ms a piece.
 struct WorthAPlan {
   double seconds = 0;  // of slow bends for each piece, at least
   double share = 1;    // of the time, at most: with more there is a cusp

@@ -37,7 +37,8 @@ struct FeedPlan {
 // the plan gets more where it needs them. The error of the time falls with the square of it.
 inline constexpr double kPlanDensity = 6;
 
-// For plans that are compared, or stand for the time of a control: good to a permille.
+// For plans that are compared, or stand for the time of a control: good to a permille, and 0.3 %
+// too slow at most where bends are slow. Between nodes limits may be exceeded by some percent.
 inline constexpr double kQuickPlanDensity = 2;
 
 // No limit is exceeded at the nodes and in the middle between them; between those by some 0.1 %
