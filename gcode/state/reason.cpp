@@ -82,9 +82,8 @@ constexpr Explanation kExplanations[] = {
     {kCoolant, "The coolant changes (M7, M8, M9).", kSeparate},
     {kMiscFunction, "Another M word: when it acts depends on where its block ends.", kSeparate},
     {kOwnWord,
-     "The block has a word of the control's own, or one that the user says something of (--word, "
-     "or "
-     "own-words of the profile): what it does is done there.",
+     "The block has a word of the control's own, or one that the user says something of "
+     "(--word, or own-words of the profile): what it does is done there.",
      kCopied},
     {kStateChange, "The block changes a mode (units, plane, distance, feed, path ..).", kCopied},
     {kComment, "Comments or empty lines alone.", kCopied},

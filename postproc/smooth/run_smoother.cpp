@@ -289,23 +289,20 @@ RunFacts facts_of(const Run& run, const RunContext& context, const SmoothOptions
   return facts;
 }
 
-}  // namespace
-
-namespace {
-
 // Where the tube may be tried, which is found by plans, its rivals are timed by them as well.
 WorthAPlan worth_a_plan(const Run& run, const RunContext& context, const SmoothOptions& options) {
   const Machine& machine = *options.machine;
   const double tolerance = tolerance_of(run, options.tolerance_mm);
   if (context.is_piece() || !std::isfinite(machine.max_jerk()) || options.method != Method::kBest ||
       coarse_part(run, tolerance) >= kBounds.corners) {
-    return kForms;
+    return kAmongForms;
   }
   const double alone =
       cutting_time(timed_pieces(run, 0, run.points.size() - 1), machine, context.after.path);
   const double least = least_time(run, tolerance, machine, options.tolerance_kind);
-  return tube_is_worth_trying(run.points.size(), least, alone) ? WorthAPlan{.share = kForms.share}
-                                                               : kForms;
+  return tube_is_worth_trying(run.points.size(), least, alone)
+             ? WorthAPlan{.share = kAmongForms.share}
+             : kAmongForms;
 }
 
 }  // namespace

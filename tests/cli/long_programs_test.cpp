@@ -137,17 +137,18 @@ std::size_t memory_of(const BattenFolder& folder, const std::string& command) {
   return std::stoul(expect_exit(folder.shell(kMeasured + command), 0).out);
 }
 
-// Rows of two hundred blocks, and twice as many: no more memory than some bytes of each block, for
-// the report of its run. Held as a whole a block takes some hundred.
+// Rows of two hundred blocks, and half as many more: no more memory than some bytes of each block,
+// for the report of its run. Of fewer rows how a heap lies is more than that. Held as a whole a
+// block takes some hundred.
 constexpr std::size_t kRows = 1000;
-constexpr std::size_t kForReport = kRows * 200 * 20;
+constexpr std::size_t kForReport = kRows * 200 * 10;
 
 // What is mapped counts as memory, too, of `verify` for two programs; `inspect` keeps two sections
 // of each row.
 TEST(MemoryOfLongPrograms, DoesNotGrowWithTheirBlocks) {
   const BattenFolder folder;
   const std::string text = relief(kRows);
-  for (const auto& [name, rows] : {std::pair{"once", kRows}, {"twice", 2 * kRows}}) {
+  for (const auto& [name, rows] : {std::pair{"once", 2 * kRows}, {"more", 3 * kRows}}) {
     folder.put(fmt::format("{}.nc", name), relief(rows));
     folder.put(fmt::format("{}.new.nc", name), relief(rows) + "(the end)\n");
   }
@@ -159,8 +160,8 @@ TEST(MemoryOfLongPrograms, DoesNotGrowWithTheirBlocks) {
        {Row{"smooth {0}.nc -o new.nc --force --target linuxcnc --method none --threads 1", 0},
         Row{"inspect {0}.nc", text.size()}, Row{"verify {0}.nc {0}.new.nc", 2 * text.size()}}) {
     const std::size_t once = memory_of(folder, fmt::format(fmt::runtime(command), "once"));
-    const std::size_t twice = memory_of(folder, fmt::format(fmt::runtime(command), "twice"));
-    EXPECT_LE(twice, once + mapped + kForReport) << command;
+    const std::size_t more = memory_of(folder, fmt::format(fmt::runtime(command), "more"));
+    EXPECT_LE(more, once + mapped + kForReport) << command;
   }
 }
 

@@ -75,9 +75,9 @@ struct WorthAPlan {
   double share = 1;    // of the time, at most: with more there is a cusp
 };
 
-// Forms are compared by plans where the many of them are worth it.
-inline constexpr WorthAPlan kForms = {.seconds = 0.005, .share = 0.97};
-inline constexpr WorthAPlan kNoForms = {.seconds = std::numeric_limits<double>::infinity()};
+// Of the many forms that are compared; and no chain at all.
+inline constexpr WorthAPlan kAmongForms = {.seconds = 0.005, .share = 0.97};
+inline constexpr WorthAPlan kNoPlan = {.seconds = std::numeric_limits<double>::infinity()};
 
 // The time of one chain of pieces under several settings of its control: what they have in common
 // is done once.

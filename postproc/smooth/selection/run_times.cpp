@@ -25,10 +25,10 @@ class OverriddenTimes {
 
   // Sets the others in `times`.
   void put_others(Times& times) const {
-    const double stretches = std::isfinite(machine_.max_jerk()) ? at(1, kNoForms) : programmed_;
+    const double stretches = std::isfinite(machine_.max_jerk()) ? at(1, kNoPlan) : programmed_;
     const double ratio = stretches > 0 ? programmed_ / stretches : 1;
-    times.at_half = ratio * at(kHalf, kNoForms);
-    times.at_one_and_half = ratio * at(kOneAndHalf, kNoForms);
+    times.at_half = ratio * at(kHalf, kNoPlan);
+    times.at_one_and_half = ratio * at(kOneAndHalf, kNoPlan);
   }
 
  private:

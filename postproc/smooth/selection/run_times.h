@@ -12,14 +12,14 @@ namespace batten::postproc {
 
 // Of a chain from rest to rest. `path`: as the program says. Throws as cutting_time does.
 [[nodiscard]] Times times_of(std::span<const TimedPiece> chain, const Machine& machine,
-                             gcode::PathMode path, WorthAPlan worth = kForms);
+                             gcode::PathMode path, WorthAPlan worth = kAmongForms);
 
 // Of a run between its neighbours: what it adds to the time that they take alone. From rest to rest
 // where it has none.
 class RunTimes {
  public:
   // Both must live as long. `worth`: as TimedChain::time has it.
-  RunTimes(const RunContext& context, const Machine& machine, WorthAPlan worth = kForms);
+  RunTimes(const RunContext& context, const Machine& machine, WorthAPlan worth = kAmongForms);
 
   [[nodiscard]] Times of_run(const std::vector<TimedPiece>& motions) const;
 

@@ -177,7 +177,7 @@ TEST(JerkEstimateOfForms, IsAPlanWhereThatIsWorthItsWork) {
   const std::vector<TimedPiece> chain = lobes(6000);
   const double plan = estimated_of(chain, fast_mill());
   const Times planned = timed(chain, {});
-  const Times by_stretches = timed(chain, kNoForms);
+  const Times by_stretches = timed(chain, kNoPlan);
   EXPECT_EQ(planned.programmed, plan);
   EXPECT_GT(by_stretches.programmed, 1.05 * plan);
   const double ratio = planned.programmed / by_stretches.programmed;
@@ -186,10 +186,18 @@ TEST(JerkEstimateOfForms, IsAPlanWhereThatIsWorthItsWork) {
   // Slow bends take less than all of it.
   const double all = by_stretches.programmed / static_cast<double>(chain.size());
   EXPECT_EQ(timed(chain, {.seconds = all}).programmed, by_stretches.programmed);
+  // The same in the size of a printed step: some milliseconds for each piece.
+  std::vector<TimedPiece> small = chain;
+  for (TimedPiece& each : small) {
+    for (Point3& point : std::get<geometry::CubicBezier>(each.piece).control) point *= 2e-4;
+  }
+  EXPECT_EQ(timed(small, kAmongForms).programmed, timed(small, kNoPlan).programmed);
+  EXPECT_LT(timed(small, {}).programmed, 0.99 * timed(small, kNoPlan).programmed);
+  EXPECT_EQ(timed(chain, kAmongForms).programmed, plan);
   const geometry::CubicBezier cusp{
       {Point3(0, 0, 0), Point3(10, 10, 0), Point3(0, 10, 0), Point3(10, 0, 0)}};
   const std::vector<TimedPiece> sharp(1, {cusp, 6000});
-  EXPECT_LT(timed(sharp, {}).programmed, 0.1 * timed(sharp, kForms).programmed);
+  EXPECT_LT(timed(sharp, {}).programmed, 0.1 * timed(sharp, kAmongForms).programmed);
 }
 
 // Without a limit on jerk a joint goes by the speed of the axes alone, as it did.
