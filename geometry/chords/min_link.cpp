@@ -408,8 +408,8 @@ std::vector<LinkVertex> min_link_vertices(const BsplineCurve& curve, double from
                                           const MinLinkOptions& options) {
   check(options);
   const CurvePieces pieces(curve, from, to);
-  const std::vector<double> chords =
-      chord_vertices(curve, from, to, {.max_deviation = options.tolerance});
+  const std::vector<double> chords = chord_vertices(
+      curve, from, to, {.max_deviation = options.tolerance, .balanced = options.balanced});
   std::vector<double> ends = pieces.corners();
   ends.push_back(to);
   Vertices vertices = {{pieces.point_at(from), from}};

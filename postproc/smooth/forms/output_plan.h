@@ -58,6 +58,8 @@ struct PlanOptions {
   // and how many of them there may be; 0: any number.
   double chord_height = 0.005;
   std::size_t most_moves = 0;
+  // minlink: about as many lines, made quickly for their number.
+  bool counted = false;
   // More arcs than this are not looked for.
   std::size_t most_arcs = std::numeric_limits<std::size_t>::max();
   // mm, moves to run. Of lines, where max_deviation is not to be the same everywhere; of arcs, with
@@ -75,6 +77,7 @@ struct PlanTuning {
   double least_room = 0.3;      // where the curve comes near to the limit: the proof decides
   double height_step = 0.8;     // from one height to the next lower one
   double coarser_again = 1.05;  // at least, where chords are still too many
+  int counted_gates = 8;        // along a link, where links are but counted
   double periods = 1.1;         // block periods, with which the control just holds the feed
   // Arcs. There are few that the target refuses: too tight, too short.
   double arc_chords = 0.1;  // kept for chords in their place

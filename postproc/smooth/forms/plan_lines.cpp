@@ -135,8 +135,12 @@ Vertices vertices_on(const geometry::SmoothCurve& fair, const MarkedPieces& piec
   const BsplineCurve& curve = fair.curve;
   const double deviation = options.max_deviation;
   switch (options.linearize) {
-    case Linearize::kMinLink:
-      return geometry::min_link_vertices(curve, section.from, section.to, {.tolerance = deviation});
+    case Linearize::kMinLink: {
+      geometry::MinLinkOptions links{.tolerance = deviation};
+      if (options.counted) links.gates_per_link = kPlans.counted_gates;
+      links.balanced = !options.counted;
+      return geometry::min_link_vertices(curve, section.from, section.to, links);
+    }
     case Linearize::kIlca:
       if (const auto row =
               geometry::ilca(curve, section.from, section.to, {.max_deviation = deviation})) {

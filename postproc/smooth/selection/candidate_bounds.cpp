@@ -25,7 +25,17 @@ double CandidateBounds::least_time_of(LimitsOf of) const {
                               *task_.options.machine, task_.options.tolerance_kind, of);
 }
 
-Figures CandidateBounds::least(double blocks, double distance) const {
+// Of a block in such a form: blocks of one form have about the same words.
+double CandidateBounds::least_bytes(Form form) const {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Candidate& c : so_far_.candidates) {
+    if (c.form == form)
+      least = std::min(least, kBounds.shorter * c.figures.bytes / c.figures.blocks);
+  }
+  return std::isfinite(least) ? least : kBounds.least_bytes;
+}
+
+Figures CandidateBounds::least(Form form, double blocks, double distance) const {
   const CostScale& scale = so_far_.facts.scale;
   const Times& before = scale.original.times;
   Figures least;
@@ -33,7 +43,7 @@ Figures CandidateBounds::least(double blocks, double distance) const {
   least.times = before;
   least.times.programmed += std::min(0.0, least_time_ - scale.alone);
   least.blocks = kBounds.fewer * blocks;
-  least.bytes = std::min(kBounds.least_bytes * least.blocks, scale.original.bytes);
+  least.bytes = std::min(least_bytes(form) * least.blocks, scale.original.bytes);
   least.distance = distance;
   return least;
 }
@@ -44,7 +54,7 @@ bool CandidateBounds::is_hopeless() const {
   if (options.prefer == Prefer::kSize) return false;
   if (coarse_part(run, tolerance_of(run, options.tolerance_mm)) < kBounds.coarse) return false;
   const CostScale& scale = so_far_.facts.scale;
-  const Figures corners = least(2 * scale.original.blocks / kBounds.fewer,
+  const Figures corners = least(Form::kLines, 2 * scale.original.blocks / kBounds.fewer,
                                 std::max(scale.original.distance, scale.near));
   return objection_to(corners, scale, options.prefer) != Objection::kNone ||
          cost_of(corners, scale, options.prefer) >= cost_of(scale.original, scale, options.prefer);
@@ -53,7 +63,7 @@ bool CandidateBounds::is_hopeless() const {
 bool CandidateBounds::is_beaten(Form form, double blocks, double distance) const {
   const SmoothOptions& options = task_.options;
   const RunFacts& facts = so_far_.facts;
-  const Figures figures = least(blocks, distance);
+  const Figures figures = least(form, blocks, distance);
   if (is_forced(form, facts, options)) return false;
   return objection_to(figures, facts.scale, options.prefer) != Objection::kNone ||
          cost_of(figures, facts.scale, options.prefer) >= cost_to_beat(so_far_, options);

@@ -17,9 +17,10 @@ struct BoundTuning {
   // Of their scatter: the fair curve of scattered vertices is no better known, so that a form that
   // is nearer to it is not nearer to the path that was meant.
   double known = 0.5;
-  double fewer = 0.8;          // of the blocks that are expected there may be so few
-  double least_bytes = 8;      // of a block
-  double corners = 0.5;        // part of the vertices that makes a run one of corners
+  double fewer = 0.8;      // of the blocks that are expected there may be so few
+  double least_bytes = 8;  // of a block
+  double shorter = 0.9;    // of the bytes of a block in the same form, which it may be shorter than
+  double corners = 0.5;    // part of the vertices that makes a run one of corners
   double worth_trying = 0.02;  // part of the time: the least that there must be left to win
   double search_costs = 0.02;  // s for each vertex: less machine time is not worth a search
   // The tube takes some ten milliseconds, and up to one for each point: so many seconds of the
@@ -55,7 +56,8 @@ class CandidateBounds {
 
  private:
   [[nodiscard]] double least_time_of(LimitsOf of) const;
-  [[nodiscard]] Figures least(double blocks, double distance) const;
+  [[nodiscard]] double least_bytes(Form form) const;
+  [[nodiscard]] Figures least(Form form, double blocks, double distance) const;
 
   const RunTask& task_;
   const SmoothedRun& so_far_;
