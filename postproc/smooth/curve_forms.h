@@ -24,8 +24,8 @@ struct FormTuning {
   double one_sided = 0.25;       // of that, where the run must not be cut on one side
   double named_chords[3] = {1.5, 0.6, 0.25};  // of the share, for lines laid by a named method
   double links = 0.5;  // of the chords that are as high, for such lines at the least
-  // Of lines that are counted quickly, for a bound of their blocks: no fewer than 0.96 of them.
-  double counted_links = 0.96 / kBounds.fewer;
+  // Of lines that are counted quickly, for a bound of their blocks: no fewer than 0.93 of them.
+  double counted_links = 0.93 / kBounds.fewer;
   // Blocks, in parts of those before, that curves are expected in at most where none are asked for
   // and no time is left to win: each says several numbers for each axis.
   double curve_blocks = 0.5;

@@ -210,7 +210,8 @@ bool rounding_is_worth_trying(double least_time, double time) {
 
 bool tube_is_worth_trying(std::size_t points, double least_time, double time) {
   const double costs = kBounds.tube_starts + kBounds.tube_costs * static_cast<double>(points);
-  return rounding_is_worth_trying(least_time, time) && time - least_time >= costs;
+  const double left = time - least_time;
+  return left >= kBounds.tube_wins * time && left >= costs;
 }
 
 bool corners_are_worth_trying(double corners, double least_time, double time) {

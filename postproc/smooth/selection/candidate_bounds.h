@@ -24,7 +24,9 @@ struct BoundTuning {
   double worth_trying = 0.02;  // part of the time: the least that there must be left to win
   double search_costs = 0.02;  // s for each vertex: less machine time is not worth a search
   // The tube takes some ten milliseconds, and up to one for each point: so many seconds of the
-  // machine are worth it, with so many more for each point.
+  // machine are worth it, with so many more for each point. Of what is left to win it wins up to a
+  // half where that is much, and a tenth where it is less than such a part of the time.
+  double tube_wins = 0.1;
   double tube_starts = 0.25;
   double tube_costs = 0.0005;
   std::size_t most_searched = 50;  // points: time-optimal and eight-point corners are searches each

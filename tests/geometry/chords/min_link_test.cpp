@@ -222,6 +222,24 @@ class GridOfPlaces {
   std::vector<Vector3> normals_;
 };
 
+// What the count by few gates is for: with more of them there are hardly fewer.
+TEST(MinLinkCount, IsToldByFewGates) {
+  for (const double rise : {0.0, 0.2}) {
+    for (int seed = 1; seed <= 12; ++seed) {
+      SCOPED_TRACE(testing::Message() << "seed " << seed << ", rise " << rise);
+      const auto wave = [&](double u) {
+        return Point3(u, 1.5 * std::sin(0.45 * u + seed) + 0.4 * std::sin((0.7 + 0.06 * seed) * u),
+                      rise * u * std::sin(0.3 * u));
+      };
+      const BsplineCurve curve = curve_of(wave, 0, 60, 300);
+      const auto told = static_cast<double>(links_on(curve, 0.002 * seed, 8));
+      const auto links = static_cast<double>(links_on(curve, 0.002 * seed));
+      EXPECT_GE(links, 0.93 * told);
+      EXPECT_LE(links, told + 1);
+    }
+  }
+}
+
 // No path between places of a grid needs fewer links, also where the bend changes its side. (The
 // grid's path may use 0.4 % more tolerance, since it is held against gates only.)
 TEST(MinLinkCount, IsNotBeatenByTryingAllPlacesOfAGrid) {

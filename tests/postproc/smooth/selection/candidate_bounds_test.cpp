@@ -58,6 +58,30 @@ TEST(CandidateBounds, NoFormIsFasterThanTheLeastTime) {
   EXPECT_LT(nearest, 1.01) << "a bound that nothing comes near to leaves nothing out";
 }
 
+// Blocks of a form that there is already tell how long those of another one like it are.
+TEST(CandidateBounds, KnowTheBytesOfABlockByThoseOfItsForm) {
+  const OneRun run(wave_program());
+  const RunContext context = run.context();
+  SmoothOptions options = options_for("linuxcnc");
+  options.prefer = Prefer::kSize;
+  SmoothedRun so_far = run.smooth(options);
+  const CostScale& scale = so_far.facts.scale;
+  Candidate known = so_far.candidates.front();
+  known.form = Form::kLines;
+  known.figures = scale.original;
+  known.figures.blocks = 0.5 * scale.original.blocks;
+  known.figures.bytes = 0.5 * scale.original.bytes;
+  so_far.candidates = {known};
+  const CandidateBounds bounds({run.run(), context, options}, so_far);
+  const auto is_beaten = [&](Form form, double blocks) {
+    return bounds.is_beaten(form, blocks * scale.original.blocks / kBounds.fewer,
+                            scale.original.distance);
+  };
+  EXPECT_TRUE(is_beaten(Form::kLines, 0.54));
+  EXPECT_FALSE(is_beaten(Form::kLines, 0.5));
+  EXPECT_FALSE(is_beaten(Form::kArcs, 0.54)) << "whose blocks are not known";
+}
+
 // A control that joins lines may be faster than the directions of single ones allow.
 TEST(CandidateBounds, KnowNoDirectionsWhereTheRunItselfIsFasterThanThose) {
   const OneRun run(wave_program());

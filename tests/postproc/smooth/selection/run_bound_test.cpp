@@ -107,13 +107,14 @@ TEST(RoundingIsWorthTrying, WhereItsBoundLeavesTwoPerCent) {
   EXPECT_FALSE(rounding_is_worth_trying(9.85, 10));
 }
 
-// A quarter of a second, with half a millisecond for each point, and two per cent of the time.
+// A quarter of a second, with half a millisecond for each point, and a tenth of the time.
 TEST(TubeIsWorthTrying, WhereItsBoundLeavesWhatItsWorkCosts) {
   EXPECT_TRUE(tube_is_worth_trying(20, 0.7, 1));
   EXPECT_FALSE(tube_is_worth_trying(20, 0.8, 1));
   EXPECT_TRUE(tube_is_worth_trying(2000, 8.5, 10));
   EXPECT_FALSE(tube_is_worth_trying(2000, 9, 10));
-  EXPECT_FALSE(tube_is_worth_trying(20, 99, 100));
+  EXPECT_TRUE(tube_is_worth_trying(20, 89, 100));
+  EXPECT_FALSE(tube_is_worth_trying(20, 91, 100));
 }
 
 // Where the control rounds corners itself, no curve through them wins what the search costs.
