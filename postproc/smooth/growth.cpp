@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "gcode/state/reason.h"
 #include "postproc/smooth/selection/cost.h"
 #include "postproc/smooth/selection/selection.h"
 
@@ -39,6 +40,16 @@ RunSums change_of(const RunState& work) {
   return sums_of(chosen->figures, work.smoothed.facts.length).add(before_of(work), -1);
 }
 
+// The comment that says what was done. What is smaller by less than it has is not smaller; and what
+// is faster or nearer by less than these parts is as it was.
+struct Note {
+  double blocks = 1;
+  double bytes = 36;
+  double time = 0.001;
+  double squares = 0.01;
+};
+constexpr Note kNote;
+
 bool is_asked_for(const RunState& work, const SmoothOptions& options) {
   const Candidate* chosen = work.chosen();
   return chosen != nullptr && is_forced(chosen->form, work.smoothed.facts, options);
@@ -66,6 +77,14 @@ bool is_worse_in(const Measure& measure, const PartSums& sums, const SmoothOptio
   }
   const Figures figures = figures_of(after, sums.length);
   return objection_to(figures, scale, options.prefer) == measure.objection;
+}
+
+// Whether the program is larger for the comment, and neither faster nor nearer.
+bool is_eaten_by_note(const PartSums& sums) {
+  const RunSums& change = sums.change;
+  return change.blocks + kNote.blocks > 0 && change.bytes + kNote.bytes > 0 &&
+         change.time > -kNote.time * sums.before.time &&
+         change.squares > -kNote.squares * sums.before.squares;
 }
 
 // Changes runs that grow, those first that gain the least for it.
@@ -180,6 +199,13 @@ void revert_growth(std::vector<RunState>& works, std::vector<CutRun>& cut_runs,
                    const SmoothOptions& options) {
   while (Reverter(works, cut_runs, options).revert()) {
   }
+  const bool asked_for =
+      std::ranges::any_of(works, [&](const RunState& work) { return is_asked_for(work, options); });
+  if (asked_for || !is_eaten_by_note(sums_of(works, cut_runs, options))) return;
+  for (RunState& work : works) {
+    if (work.chosen() != nullptr) work.give_up(gcode::reason::kNoGain);
+  }
+  for (CutRun& cut : cut_runs) cut.after = cut.before;
 }
 
 }  // namespace batten::postproc

@@ -95,6 +95,22 @@ TEST_F(Growth, OfTheDistanceGoesAsThatOfBlocksDoes) {
   EXPECT_EQ(works_[0].reject_reason, gcode::reason::kFarther);
 }
 
+// Its comment is a block of 36 bytes.
+TEST_F(Growth, OfAProgramByItsCommentAloneIsNotWorthIt) {
+  add({figures(10, 100, 970, 0.004)});
+  EXPECT_EQ(settled(), Chosen{-1});
+  EXPECT_EQ(works_[0].reject_reason, gcode::reason::kNoGain);
+}
+
+TEST_F(Growth, ByTheCommentIsPaidByBlocksBytesTimeOrDistance) {
+  for (const Figures& paid : {figures(10, 99, 970, 0.004), figures(10, 100, 960, 0.004),
+                              figures(9.98, 100, 970, 0.004), figures(10, 100, 970, 0.0039)}) {
+    works_.clear();
+    add({paid});
+    EXPECT_EQ(settled(), Chosen{0});
+  }
+}
+
 TEST_F(Growth, OfAFormThatIsAskedForStays) {
   add({figures(10, 140, 1400, 0.006)});
   works_[0].smoothed.candidates[0].form = Form::kArcs;
