@@ -90,6 +90,8 @@ class SiemensReader(PlainReader):
         if "L" in values or "T" in values and isinstance(values["T"], str) and not values["T"]:
             raise Unknown
         for name, arguments in names:
+            if codes and name in ("TRANS", "ATRANS", "ROT", "AROT", "SCALE", "MIRROR"):
+                self.siemens_words({}, codes, raw)  # the values are those of the frame
             if name in ("TRANS", "ATRANS", "SUPA", "G153"):
                 self.event(raw)
                 self.act("moves")
@@ -128,6 +130,9 @@ class SiemensReader(PlainReader):
                 self.motion = "BSPLINE"
                 self.spline = ([tuple(self.place)], [1.0], [], [])
                 continue
+            if name.startswith("POCKET"):  # a cycle of the control: modal functions are as before
+                self.event(raw)
+                return self.act("moves")
             if name not in self.KEEPS:
                 raise Unknown
             self.event(name + (arguments or ""))
