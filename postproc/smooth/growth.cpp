@@ -199,8 +199,7 @@ void revert_growth(std::vector<RunState>& works, std::vector<CutRun>& cut_runs,
                    const SmoothOptions& options) {
   while (Reverter(works, cut_runs, options).revert()) {
   }
-  const bool asked_for =
-      std::ranges::any_of(works, [&](const RunState& work) { return is_asked_for(work, options); });
+  const bool asked_for = options.output != Form::kAuto;
   if (asked_for || !is_eaten_by_note(sums_of(works, cut_runs, options))) return;
   for (RunState& work : works) {
     if (work.chosen() != nullptr) work.give_up(gcode::reason::kNoGain);

@@ -42,6 +42,11 @@ Figures CandidateBounds::least(Form form, double blocks, double distance) const 
   // A control that rounds corners may take less than the length of the path at its feeds.
   least.times = before;
   least.times.programmed += std::min(0.0, least_time_ - scale.alone);
+  // Where noise is smoothed over many vertices the path is shorter than the bound knows: what one
+  // form takes another may take as well.
+  for (const Candidate& c : so_far_.candidates) {
+    least.times.programmed = std::min(least.times.programmed, c.figures.times.programmed);
+  }
   least.blocks = kBounds.fewer * blocks;
   least.bytes = std::min(least_bytes(form) * least.blocks, scale.original.bytes);
   least.distance = distance;

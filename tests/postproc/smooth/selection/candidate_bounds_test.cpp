@@ -82,6 +82,24 @@ TEST(CandidateBounds, KnowTheBytesOfABlockByThoseOfItsForm) {
   EXPECT_FALSE(is_beaten(Form::kArcs, 0.54)) << "whose blocks are not known";
 }
 
+// Where noise is smoothed the path may be shorter than the bound of the time knows: a form that has
+// shown it rules out none that may take as long.
+TEST(CandidateBounds, KnowThatAnotherFormMayBeAsFast) {
+  const OneRun run(wave_program());
+  const RunContext context = run.context();
+  const SmoothOptions options = options_for("linuxcnc");
+  SmoothedRun so_far = run.smooth(options);
+  const Figures old = so_far.facts.scale.original;
+  Candidate faster = so_far.candidates.front();
+  faster.figures = old;
+  faster.figures.times.programmed =
+      0.5 * CandidateBounds({run.run(), context, options}, so_far).least_time();
+  so_far.candidates = {faster};
+  const CandidateBounds bounds({run.run(), context, options}, so_far);
+  EXPECT_FALSE(bounds.is_beaten(Form::kLines, 0.5 * old.blocks, 0));
+  EXPECT_TRUE(bounds.is_beaten(Form::kLines, 2 * old.blocks, 2 * old.distance));
+}
+
 // A control that joins lines may be faster than the directions of single ones allow.
 TEST(CandidateBounds, KnowNoDirectionsWhereTheRunItselfIsFasterThanThose) {
   const OneRun run(wave_program());
