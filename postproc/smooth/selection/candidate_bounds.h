@@ -22,6 +22,8 @@ struct BoundTuning {
   double shorter = 0.9;    // of the bytes of a block in the same form, which it may be shorter than
   double corners = 0.5;    // part of the vertices that makes a run one of corners
   double worth_trying = 0.02;  // part of the time: the least that there must be left to win
+  // Of the time: what a search for each corner wins at most on the quick rounding of corners.
+  double search_wins = 0.1;
   double search_costs = 0.02;  // s for each vertex: less machine time is not worth a search
   // The tube takes some ten milliseconds, and up to one for each point: so many seconds of the
   // machine are worth it, with so many more for each point. Of what is left to win it wins up to a

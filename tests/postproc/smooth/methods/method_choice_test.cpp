@@ -279,6 +279,21 @@ TEST(BestMethod, TriesNothingElseOnSmoothRuns) {
   EXPECT_EQ(rewritten_run(result).methods.size(), 1u);
 }
 
+// A short bend in chords of 0.3 mm, which `fair` runs much faster than any rounding of its corners.
+TEST(BestMethod, SearchesForNoCornersWhereRoundingThemIsFarFromTheFastest) {
+  SmoothOptions options = options_with(Method::kBest, "fanuc");
+  options.machine = find_machine("high-speed");
+  const SmoothResult result = smoothed(
+      "G21 G90 G94\nG0 X0 Y0 Z5\nG1 Z0 F1000\nF2500\nG1 X12.098 Y13.640 Z-0.5\n"
+      "X11.984 Y13.362\nX11.985 Y13.050\nX12.107 Y12.740\nX12.348 Y12.466\nX12.696 Y12.264\nM2\n",
+      options);
+  for (const RunReport& run : result.runs) {
+    for (const std::string_view search : {"ozcan", "racing"}) {
+      EXPECT_EQ(std::ranges::find(run.methods, search, &MethodTime::method), run.methods.end());
+    }
+  }
+}
+
 // --- which methods were tried -------------------------------------------------------------------
 
 Candidate candidate(std::string_view method, double time) {
