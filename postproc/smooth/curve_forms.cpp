@@ -103,13 +103,10 @@ class CurveForms {
                                [&](const Candidate& c) { return c.form == form; });
   }
 
-  // In the order in which they were offered, but for those that what there is then beats. Gives the
-  // blocks of the last one; 0 where it is not made.
-  double make_best() {
+  // In the order in which they were offered, but for those that what there is then beats.
+  void make_best() {
     const bool all = task_.scope == CandidateScope::kAll;
-    double blocks = 0;
     for (Offer& offer : offers_) {
-      blocks = 0;
       if (!all && setting_.bounds.is_beaten(offer.form, offer.blocks, offer.distance)) {
         result_.left_out = true;
         continue;
@@ -120,14 +117,12 @@ class CurveForms {
       auto candidate = made(offer);
       const bool limited = offer.options.most_arcs < PlanOptions().most_arcs;
       if (candidate) {
-        blocks = candidate->figures.blocks;
         result_.candidates.push_back(std::move(*candidate));
       } else if (limited) {
         result_.left_out = true;  // there may be more arcs than these
       }
     }
     offers_.clear();
-    return blocks;
   }
 
   [[nodiscard]] std::optional<Candidate> made(const Offer& offer) const {
@@ -257,7 +252,7 @@ class CurveForms {
 
   void offer_lines() {
     const auto named = task_.options.linearize;
-    if (named && *named != Linearize::kChord) return make_named_lines(0);
+    if (named && *named != Linearize::kChord) return make_named_lines();
     // Where it is known how far the curve is from each edge, chords may take the rest there.
     const bool known = !one_sided_ && !curve_.path.edge_deviations.empty();
     double most = known ? kFormTuning.far * share_ : far();
@@ -271,7 +266,7 @@ class CurveForms {
       offer_chords(height, accurate && i == 0 ? kFormTuning.accurate_blocks : 1, highest);
     }
     offer_chords(highest, 0, highest);
-    if (linearize_of(task_.options) == Linearize::kMinLink) make_named_lines(make_best());
+    if (linearize_of(task_.options) == Linearize::kMinLink) make_named_lines();
   }
 
   // `most`: in parts of the blocks that there were; 0: any number. They may become higher for it.
@@ -289,27 +284,25 @@ class CurveForms {
     offers_.push_back({Form::kLines, blocks, kFormTuning.of_height * height, plan});
   }
 
-  // The farthest first: of nearer ones there are no fewer. `chords`: so many as far away, which
-  // tell how many links there will be; 0 where none were made.
-  void make_named_lines(double chords) {
+  // The farthest first, one by one: of nearer ones there are no fewer.
+  void make_named_lines() {
+    make_best();
     double before = 0;
-    double fewest = result_.links_of_chords * chords;
+    double fewest = 0;
     for (const double multiple : kFormTuning.named_chords) {
       const PlanOptions plan = plan_within(multiple * share_);
       if (before > 0 && plan.max_deviation > kFormTuning.another * before) continue;
-      const bool farthest = before == 0;
       before = plan.max_deviation;
       fewest = std::max(fewest, kFormTuning.links * bends_.chords(plan.max_deviation, 0));
       if (!setting_.bounds.is_beaten(Form::kLines, fewest, 0)) {
         fewest = std::max(fewest, kFormTuning.counted_links * links_about(plan));
       }
       offers_.push_back({Form::kLines, fewest, 0, plan});
-      const double made = make_best();
-      if (farthest && chords > 0 && made > 0) result_.links_of_chords = made / chords;
+      make_best();
     }
   }
 
-  // How many lines of fewest links there will be, in a seventh of the time that they take; 0 where
+  // How many lines of fewest links there will be, in a part of the work that they take; 0 where
   // that is not asked for.
   [[nodiscard]] double links_about(PlanOptions plan) const {
     if (plan.linearize != Linearize::kMinLink || task_.memo != nullptr) return 0;

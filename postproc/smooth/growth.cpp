@@ -5,10 +5,12 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "gcode/state/reason.h"
+#include "postproc/smooth/forms/provenance.h"
 #include "postproc/smooth/selection/cost.h"
 #include "postproc/smooth/selection/selection.h"
 
@@ -40,16 +42,6 @@ RunSums change_of(const RunState& work) {
   return sums_of(chosen->figures, work.smoothed.facts.length).add(before_of(work), -1);
 }
 
-// The comment that says what was done. What is smaller by less than it has is not smaller; and what
-// is faster or nearer by less than these parts is as it was.
-struct Note {
-  double blocks = 1;
-  double bytes = 36;
-  double time = 0.001;
-  double squares = 0.01;
-};
-constexpr Note kNote;
-
 bool is_asked_for(const RunState& work, const SmoothOptions& options) {
   const Candidate* chosen = work.chosen();
   return chosen != nullptr && is_forced(chosen->form, work.smoothed.facts, options);
@@ -79,12 +71,23 @@ bool is_worse_in(const Measure& measure, const PartSums& sums, const SmoothOptio
   return objection_to(figures, scale, options.prefer) == measure.objection;
 }
 
-// Whether the program is larger for the comment, and neither faster nor nearer.
-bool is_eaten_by_note(const PartSums& sums) {
-  const RunSums& change = sums.change;
-  return change.blocks + kNote.blocks > 0 && change.bytes + kNote.bytes > 0 &&
-         change.time > -kNote.time * sums.before.time &&
-         change.squares > -kNote.squares * sums.before.squares;
+// Whether a run is clearly better in something else than its size.
+bool wins_beside_size(const RunState& work) {
+  if (work.chosen() == nullptr) return false;
+  const CostScale& scale = work.smoothed.facts.scale;
+  Figures figures = work.chosen()->figures;
+  figures.blocks = scale.original.blocks;
+  figures.bytes = scale.original.bytes;
+  return is_clearly_better(figures, scale);
+}
+
+// Whether all that is won are fewer blocks and bytes than the comment takes.
+bool is_eaten_by_comment(const std::vector<RunState>& works, const PartSums& sums,
+                         const SmoothOptions& options) {
+  const std::string comment = provenance_comment(*options.target, options.tolerance_mm);
+  if (comment.empty() || std::ranges::any_of(works, wins_beside_size)) return false;
+  const auto bytes = static_cast<double>(comment.size() + 1);
+  return sums.change.blocks + 1 > 0 && sums.change.bytes + bytes > 0;
 }
 
 // Changes runs that grow, those first that gain the least for it.
@@ -200,7 +203,7 @@ void revert_growth(std::vector<RunState>& works, std::vector<CutRun>& cut_runs,
   while (Reverter(works, cut_runs, options).revert()) {
   }
   const bool asked_for = options.output != Form::kAuto;
-  if (asked_for || !is_eaten_by_note(sums_of(works, cut_runs, options))) return;
+  if (asked_for || !is_eaten_by_comment(works, sums_of(works, cut_runs, options), options)) return;
   for (RunState& work : works) {
     if (work.chosen() != nullptr) work.give_up(gcode::reason::kNoGain);
   }

@@ -195,14 +195,12 @@ class RunSmoother {
   // Whether rounding each corner by itself comes near to the fastest form so far: a search for each
   // is faster by some percent, where the others are not by far.
   [[nodiscard]] bool may_lead_by_corners() const {
-    double fastest = result_.facts.scale.original.times.programmed;
     double by_corners = std::numeric_limits<double>::infinity();
     for (const Candidate& c : result_.candidates) {
-      const double time = c.figures.times.programmed;
-      fastest = std::min(fastest, time);
-      if (c.method == name_of(Method::kGuo)) by_corners = std::min(by_corners, time);
+      if (c.method != name_of(Method::kGuo)) continue;
+      by_corners = std::min(by_corners, c.figures.times.programmed);
     }
-    return by_corners - fastest <= kBounds.search_wins * best_time();
+    return by_corners - fastest() <= kBounds.search_wins * best_time();
   }
 
   // Where jerk is limited, and the run is no run of corners, between which the tube has lines.
@@ -220,17 +218,22 @@ class RunSmoother {
     return coarse_part(run(), tolerance_of(run(), options().tolerance_mm));
   }
 
-  // s, from rest to rest; of a part of a run the times are those between its neighbours.
-  [[nodiscard]] double best_time() const {
+  // s, of the forms so far in their place. Where one is asked for by name, the blocks as they are
+  // do not count.
+  [[nodiscard]] double fastest() const {
     const RunFacts& facts = result_.facts;
-    if (context().is_piece()) return facts.scale.alone;
-    // Where a form is asked for by name, the blocks as they are do not count.
     const bool forced = is_forced(options().output, facts, options());
-    double time = forced ? std::numeric_limits<double>::infinity() : facts.scale.alone;
+    double time =
+        forced ? std::numeric_limits<double>::infinity() : facts.scale.original.times.programmed;
     for (const Candidate& c : result_.candidates) {
       time = std::min(time, c.figures.times.programmed);
     }
     return time;
+  }
+
+  // s, from rest to rest; of a part of a run the times are those between its neighbours.
+  [[nodiscard]] double best_time() const {
+    return context().is_piece() ? result_.facts.scale.alone : fastest();
   }
 
   // Whether a curve that rounds corners and spends the tolerance may be better: by its time; or,

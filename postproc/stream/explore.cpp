@@ -8,6 +8,7 @@
 #include <variant>
 
 #include "postproc/runs/run_path.h"
+#include "postproc/smooth/forms/provenance.h"
 #include "postproc/smooth/part_runs.h"
 #include "postproc/smooth/selection/cost.h"
 #include "postproc/stream/pipeline.h"

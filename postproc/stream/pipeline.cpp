@@ -18,6 +18,7 @@
 #include "postproc/convert/translation.h"
 #include "postproc/profile/target_profile.h"
 #include "postproc/proof/verification.h"
+#include "postproc/smooth/forms/provenance.h"
 #include "postproc/smooth/part_runs.h"
 #include "postproc/stream/part_reader.h"
 

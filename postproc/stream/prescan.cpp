@@ -17,6 +17,7 @@
 #include "postproc/machine/program_time/program_time_steps.h"
 #include "postproc/profile/target_profile.h"
 #include "postproc/proof/program_events.h"
+#include "postproc/smooth/forms/provenance.h"
 #include "postproc/stream/smooth_result.h"
 #include "postproc/system/parallel_for.h"
 

@@ -10,10 +10,9 @@
 
 #include "gcode/curves/curve_format.h"
 #include "gcode/state/reason.h"
-#include "gcode/text/characters.h"
-#include "gcode/text/number_format.h"
 #include "postproc/machine/program_time/program_time_blocks.h"
 #include "postproc/runs/run_path.h"
+#include "postproc/smooth/forms/provenance.h"
 
 namespace batten::postproc {
 
@@ -283,30 +282,6 @@ std::string_view complaint(ExitCode verdict, bool strict) {
   }
   return strict ? "--strict: not every run could be proved; nothing was written"
                 : "the new program could not be proved; nothing was written";
-}
-
-namespace {
-
-constexpr std::string_view kSmoothed = "Batten: smoothed within ";
-
-// Digits of the tolerance in the comment: a ten-thousandth of the usual 0.01 mm.
-constexpr gcode::NumberFormat kTolerance = {6, false, false};
-
-}  // namespace
-
-std::string provenance_comment(const gcode::Control& target, double tolerance_mm) {
-  return comment_line(target,
-                      std::string(kSmoothed) + gcode::to_text(tolerance_mm, kTolerance) + " mm");
-}
-
-// Some controls have no small letters.
-bool was_smoothed(const gcode::Program& program) {
-  const auto same = [](char a, char b) { return gcode::upper(a) == gcode::upper(b); };
-  return std::ranges::any_of(program.comments, [&](const gcode::Comment& comment) {
-    const std::string_view text = program.source.text(comment.span);
-    return std::search(text.begin(), text.end(), kSmoothed.begin(), kSmoothed.end(), same) !=
-           text.end();
-  });
 }
 
 gcode::Diagnostics notes_on_runs(std::span<const RunReport> runs, const gcode::Program& program,

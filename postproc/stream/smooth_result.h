@@ -144,14 +144,6 @@ using Progress = std::function<bool(double)>;
 // Why nothing was written, for the user. Requires a verdict other than kDone.
 [[nodiscard]] std::string_view complaint(ExitCode verdict, bool strict);
 
-// The comment that a program was smoothed, and within what, as the target writes it, without a line
-// end; empty when the target has no words for it. Tolerances add up: a program with this comment is
-// not smoothed again unless the user allows it.
-[[nodiscard]] std::string provenance_comment(const gcode::Control& target, double tolerance_mm);
-
-// Whether a comment of the program says so.
-[[nodiscard]] bool was_smoothed(const gcode::Program& program);
-
 // What a user must know of the runs that were written, at the first run that it is true of:
 // - the note `missing-provenance` where the target has no certain comment: nothing in the text says
 //   then that it was smoothed;

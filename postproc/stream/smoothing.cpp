@@ -18,6 +18,7 @@
 #include "postproc/machine/program_time/program_time.h"
 #include "postproc/profile/target_profile.h"
 #include "postproc/runs/band_notes.h"
+#include "postproc/smooth/forms/provenance.h"
 #include "postproc/smooth/part_runs.h"
 #include "postproc/stream/assembly.h"
 #include "postproc/stream/part_crossings.h"

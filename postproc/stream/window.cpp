@@ -13,6 +13,7 @@
 #include "gcode/state/modal_state.h"
 #include "gcode/state/reason.h"
 #include "postproc/runs/run_cutting.h"
+#include "postproc/smooth/forms/provenance.h"
 #include "postproc/stream/assembly.h"
 #include "postproc/stream/misread_arcs.h"
 #include "postproc/stream/smooth_result.h"

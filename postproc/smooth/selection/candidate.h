@@ -70,8 +70,6 @@ struct SmoothedRun {
   std::string_view reason;
   bool left_out = false;     // there are more that the choice would not prefer to the best of these
   bool passed_over = false;  // one that could not gain was not made
-  // Lines of fewest links in parts of the chords as far from the same curve: of the last curve.
-  double links_of_chords = 0.9;
 };
 
 // Which candidates are made. Others are of use where the proof of the chosen one fails. Of a run

@@ -23,6 +23,7 @@ class Growth : public testing::Test {
     const gcode::ModalState& state = read_.meaning.states.front();
     RunState work{works_.size(), {read_.program, state, state, "\n", 100, 1000}};
     work.smoothed.facts.scale.original = figures(10, 100, 1000, 0.004);
+    work.smoothed.facts.scale.alone = 10;
     work.smoothed.facts.length = 100;
     for (const Figures& each : candidates) {
       work.selection.order.push_back(work.smoothed.candidates.size());
@@ -32,8 +33,8 @@ class Growth : public testing::Test {
   }
 
   // Indices of the chosen candidates, -1 where the run is kept.
-  std::vector<int> settled(Prefer prefer = Prefer::kTime) {
-    SmoothOptions options = options_for("linuxcnc");
+  std::vector<int> settled(Prefer prefer = Prefer::kTime, std::string_view target = "linuxcnc") {
+    SmoothOptions options = options_for(target);
     options.prefer = prefer;
     revert_growth(works_, cut_runs_, options);
     std::vector<int> chosen;
@@ -95,16 +96,24 @@ TEST_F(Growth, OfTheDistanceGoesAsThatOfBlocksDoes) {
   EXPECT_EQ(works_[0].reject_reason, gcode::reason::kFarther);
 }
 
-// Its comment is a block of 36 bytes.
+// Its comment is a block of 35 bytes. Of 1000 bytes they are less than a run may grow.
 TEST_F(Growth, OfAProgramByItsCommentAloneIsNotWorthIt) {
   add({figures(10, 100, 970, 0.004)});
   EXPECT_EQ(settled(), Chosen{-1});
   EXPECT_EQ(works_[0].reject_reason, gcode::reason::kNoGain);
 }
 
-TEST_F(Growth, ByTheCommentIsPaidByBlocksBytesTimeOrDistance) {
-  for (const Figures& paid : {figures(10, 99, 970, 0.004), figures(10, 100, 960, 0.004),
-                              figures(9.98, 100, 970, 0.004), figures(10, 100, 970, 0.0039)}) {
+TEST_F(Growth, OfNoCommentIsNone) {
+  add({figures(10, 100, 970, 0.004)});
+  EXPECT_EQ(settled(Prefer::kTime, "codesys"), Chosen{0});
+}
+
+TEST_F(Growth, ByTheCommentIsPaidByBlocksBytesTimeDistanceOrRoughness) {
+  Figures smoother = figures(10, 100, 970, 0.004);
+  smoother.roughness = 0.04;
+  for (const Figures& paid :
+       {figures(10, 99, 970, 0.004), figures(10, 100, 960, 0.004), figures(9.9, 100, 970, 0.004),
+        figures(10, 100, 970, 0.002), smoother}) {
     works_.clear();
     add({paid});
     EXPECT_EQ(settled(), Chosen{0});

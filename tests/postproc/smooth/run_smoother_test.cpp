@@ -157,6 +157,26 @@ std::string zigzag_of_corners(int feed) {
 }
 
 // At 500 mm/min 4 % of the time are left to win, at 1000 mm/min 10 %.
+// Lines of fewest links are counted before they are made: not all that could be are laid.
+TEST(SmoothRun, LaysLinksOnlyWhereTheirCountMayWin) {
+  SmoothOptions options = options_for("linuxcnc");
+  options.prefer = Prefer::kSize;
+  const auto lines_of = [&](const OneRun& run, CandidateScope scope) {
+    return std::ranges::count(run.smooth(options, scope).candidates, Form::kLines,
+                              &Candidate::form);
+  };
+  std::ptrdiff_t chosen = 0;
+  std::ptrdiff_t all = 0;
+  for (const std::string& text : {wave_program(), wave_program({.height = 0.5, .length = 40}),
+                                  wave_program({.lines = 400, .height = 4.0, .length = 6.0})}) {
+    const OneRun run(text);
+    chosen += lines_of(run, CandidateScope::kToChoose);
+    all += lines_of(run, CandidateScope::kAll);
+  }
+  EXPECT_LE(chosen, 18);  // 26 by what the curvature says alone
+  EXPECT_GT(all, 26);
+}
+
 TEST(SmoothRun, RoundsCornersByAnotherCurveWhereThatMayWinMuch) {
   SmoothOptions options = options_for("siemens");
   options.machine = find_machine("high-speed");

@@ -9,6 +9,7 @@
 #include "gcode/controls/built_in.h"
 #include "geometry/distance/path_distance.h"
 #include "postproc/cli/cli.h"
+#include "postproc/smooth/curve_forms.h"
 #include "postproc/smooth/forms/output_plan.h"
 #include "tests/support/curve_of.h"
 
@@ -72,10 +73,12 @@ struct Wave {
     return geometry::curve_of(f, 0, 60, 600);
   }
 
-  [[nodiscard]] OutputPlan planned(Linearize linearize) const {
+  [[nodiscard]] OutputPlan planned(Linearize linearize, double deviation = 0.005,
+                                   bool counted = false) const {
     PlanOptions options{gcode::find_control("linuxcnc"), find_machine("linuxcnc")};
-    options.max_deviation = 0.005;
+    options.max_deviation = deviation;
     options.linearize = linearize;
+    options.counted = counted;
     return plan_lines(run, fair, geometry::MarkedPieces(fair.curve), options);
   }
 };
@@ -101,6 +104,18 @@ TEST(PlanLines, StayNearTheCurveAndChangeTheFeedOnItHoweverTheyAreLaid) {
       EXPECT_LE((geometry::start_point(plan.moves[i].piece) - wave.run.points[50]).norm(), 1e-9);
     }
     EXPECT_EQ(changes, 1);
+  }
+}
+
+// The bound that a quick count of links gives holds for them, and is near to them.
+TEST(PlanLines, AreAsManyLinksAsTheirQuickCountSays) {
+  const Wave wave;
+  for (const double deviation : {0.001, 0.002, 0.005, 0.01, 0.02}) {
+    const std::size_t links = wave.planned(Linearize::kMinLink, deviation).moves.size();
+    const std::size_t counted = wave.planned(Linearize::kMinLink, deviation, true).moves.size();
+    const double least = kFormTuning.counted_links * kBounds.fewer * static_cast<double>(counted);
+    EXPECT_GE(static_cast<double>(links), least);
+    EXPECT_LE(static_cast<double>(links), 1.15 * least);
   }
 }
 

@@ -6,7 +6,7 @@
 
 #include "gcode/control/control.h"
 #include "gcode/controls/built_in.h"
-#include "postproc/stream/smooth_result.h"
+#include "postproc/smooth/forms/provenance.h"
 #include "tests/support/wavy_programs.h"
 
 namespace batten::postproc {
