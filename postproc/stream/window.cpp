@@ -263,14 +263,12 @@ class Prover {
     ReadProgram before{&part_.program, &part_.meaning};
     ReadProgram after{&program, &meaning};
     const std::vector<std::uint32_t> begins = blocks_at(assembled.begins, program);
-    std::vector<std::uint32_t> new_cuts;
     // Between lines that a profile adds nothing is cut: these lines are gone where it is compared.
     // The proof does not rely on the cuts: its parts together are the whole, wherever they end.
-    if (!runs_.cuts.empty() && additions_.words.empty()) {
-      for (std::size_t i = 0; i < begins.size(); ++i) {
-        const bool is_cut = std::ranges::binary_search(runs_.cuts, runs_.sections[i].first_block);
-        if (is_cut) new_cuts.push_back(begins[i]);
-      }
+    const bool may_cut = additions_.words.empty();
+    const std::vector<std::uint32_t> new_cuts =
+        may_cut ? places_of(runs_.cuts, begins) : std::vector<std::uint32_t>();
+    if (!new_cuts.empty()) {
       before.cuts = runs_.cuts;
       after.cuts = new_cuts;
     }
@@ -281,6 +279,9 @@ class Prover {
     const Promise promise(options_.tolerance_mm, options_.tolerance_kind, options_.side,
                           options_.target);
     round.verification = verify(before, after, promise, options_.threads);
+    if (may_cut && !round.verification.proved()) {
+      add_violations_of_pieces(before, after, begins, promise, round.verification);
+    }
     for (const auto& more : {added.violations, events_in_brackets(after, added.brackets)}) {
       round.verification.violations.insert(round.verification.violations.end(), more.begin(),
                                            more.end());
@@ -309,6 +310,44 @@ class Prover {
     gcode::Interpretation meaning = gcode::interpret(program, read_options_, ignored);
     return std::make_shared<const gcode::ReadPart>(
         gcode::ReadPart{std::move(program), std::move(meaning)});
+  }
+
+  // Where sections that begin at such blocks of the old text begin in the new one.
+  [[nodiscard]] std::vector<std::uint32_t> places_of(
+      const std::vector<std::uint32_t>& old_blocks,
+      const std::vector<std::uint32_t>& begins) const {
+    std::vector<std::uint32_t> places;
+    if (old_blocks.empty()) return places;
+    for (std::size_t i = 0; i < begins.size(); ++i) {
+      if (std::ranges::binary_search(old_blocks, runs_.sections[i].first_block)) {
+        places.push_back(begins[i]);
+      }
+    }
+    return places;
+  }
+
+  // A path is compared up to where it leaves the tolerance. So that one round tells of all pieces
+  // of runs that do, each is compared by itself as well; what that proves, the whole still has to.
+  void add_violations_of_pieces(ReadProgram before, ReadProgram after,
+                                const std::vector<std::uint32_t>& begins, const Promise& promise,
+                                Verification& verification) const {
+    std::vector<std::uint32_t> cuts;
+    for (const RunState& work : runs_.works) {
+      const Section& section = runs_.sections[work.section];
+      if (work.cut_run && work.first > 0) cuts.push_back(section.first_block);
+    }
+    if (cuts.empty()) return;
+    std::vector<std::uint32_t> old_cuts;
+    std::ranges::set_union(cuts, runs_.cuts, std::back_inserter(old_cuts));
+    const std::vector<std::uint32_t> new_cuts = places_of(old_cuts, begins);
+    before.cuts = old_cuts;
+    after.cuts = new_cuts;
+    Verification of_pieces = verify(before, after, promise, options_.threads);
+    for (Violation& violation : of_pieces.violations) {
+      const bool apart =
+          violation.kind == ViolationKind::kDistance || violation.kind == ViolationKind::kNotProved;
+      if (apart) verification.violations.push_back(std::move(violation));
+    }
   }
 
   // What the target refuses is new text: it belongs to the run that it was written for.

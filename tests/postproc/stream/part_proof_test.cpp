@@ -2,6 +2,7 @@
 // run, those that were left out, and in the end the blocks as they were.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <variant>
 
 #include "gcode/state/reason.h"
@@ -43,16 +44,25 @@ class SmoothedPart {
   }
 
   ProvedText proved() {
-    auto done = prove_text(part_, options_, {}, {}, go_on, runs_);
+    rounds_ = 0;
+    const auto count = [this](double) {
+      ++rounds_;
+      return true;
+    };
+    auto done = prove_text(part_, options_, {}, {}, count, runs_);
     EXPECT_TRUE(done);
     return done.value_or(ProvedText{});
   }
+
+  // Of the last proof, each with the whole text; where something was smoothed anew, that as well.
+  std::size_t rounds() const { return rounds_; }
 
  private:
   ReadText read_;
   SmoothOptions options_ = options_for("linuxcnc");
   ProgramPart part_;
   PartRuns runs_;
+  std::size_t rounds_ = 0;
 };
 
 // Of shallow waves two forms are good enough to be chosen.
@@ -145,6 +155,23 @@ TEST(PartProof, KeepsAPieceThatIsWrongAndCutsNoOther) {
   for (const RunState& piece : part.runs().works) {
     EXPECT_EQ(piece.chosen() == nullptr, &piece == &part.work()) << piece.reject_reason;
   }
+}
+
+// Each round reads and compares the whole text: it must not tell of one piece only.
+TEST(PartProof, TellsOfAllPiecesThatAreWrongAtOnce) {
+  SmoothedPart part(kLong, Form::kLines);
+  part.spoil(part.work().selection.order.size());
+  ASSERT_TRUE(part.proved().proved);
+  const std::size_t pieces = part.runs().works.size();
+  ASSERT_GE(pieces, 3U);
+  std::size_t most = 0;
+  for (std::size_t i = 0; i < pieces; ++i) {
+    ASSERT_NE(part.work(i).chosen(), nullptr);
+    most = std::max(most, part.work(i).selection.order.size());
+    part.spoil(part.work(i).selection.order.size(), i);
+  }
+  EXPECT_TRUE(part.proved().proved);
+  EXPECT_LE(part.rounds(), most + 1);
 }
 
 TEST(PartProof, KeepsTheBlocksWhereEveryCandidateIsWrong) {
