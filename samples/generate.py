@@ -306,7 +306,7 @@ def engraved_text():
 def inch_ellipse():
     """An inch program with comments on lines of their own and on motion blocks."""
     program = Program(
-        "%", "(ELLIPSE 3 X 2 INCH, CLIMB)", "(STOCK TOP IS Z0)", "G20 G90 G17 G94", "G64 P0.0004",
+        "%", "(ELLIPSE 3 X 2 INCH, CLIMB)", "(STOCK TOP IS Z0)", "G20 G90 G17 G94", "G64 P0.0005",
         "T3 M6 (1/4 END MILL)", "S9000 M3", decimals=4,
     )
     count = 480

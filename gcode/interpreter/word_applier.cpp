@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "gcode/interpreter/program_flow.h"
+#include "gcode/state/path_control.h"
 #include "gcode/text/characters.h"
 
 namespace batten::gcode {
@@ -124,7 +125,9 @@ class WordApplier {
       case CodeGroup::kWorkOffset:
         return apply_work_offset(row);
       case CodeGroup::kPath:
-        return set(row, modal().path);
+        set(row, modal().path.mode);
+        modal().path = path_control_of(modal().path.mode, words_, modal().units);
+        return;
       case CodeGroup::kSpindleMode:
         return set(row, modal().constant_surface_speed);
       case CodeGroup::kDiameter:

@@ -18,6 +18,7 @@ inline constexpr Code kNoCode = -1;
 [[nodiscard]] Code code_of(const Word& word);
 
 enum class Units : std::uint8_t { kUnknown, kMillimetre, kInch };
+inline constexpr double kMillimetresPerInch = 25.4;
 enum class Plane : std::uint8_t { kUnknown, kXY, kZX, kYZ };  // G17, G18, G19
 enum class DistanceMode : std::uint8_t { kUnknown, kAbsolute, kIncremental };
 enum class FeedMode : std::uint8_t { kUnknown, kPerMinute, kInverseTime, kPerRevolution };

@@ -16,7 +16,7 @@ void for_each_mode(ModalState& a, const ModalState& b, Visit visit) {
   visit(a.distance, b.distance, DistanceMode::kUnknown, mode::kDistance);
   visit(a.arc_distance, b.arc_distance, DistanceMode::kUnknown, mode::kArcDistance);
   visit(a.feed_mode, b.feed_mode, FeedMode::kUnknown, mode::kFeedMode);
-  visit(a.path, b.path, PathMode::kUnknown, mode::kPath);
+  visit(a.path.mode, b.path.mode, PathMode::kUnknown, mode::kPath);
   visit(a.motion, b.motion, MotionMode::kUnknown, ModeSet{0});
   ModeSet next = 1U << mode::kFirstSwitch;
   for (const ModalSwitch& each : kModalSwitches) {
@@ -67,6 +67,7 @@ ModalState either(const ModalState& a, const ModalState& b) {
   });
   if (a.feed != b.feed || a.feed_without_point != b.feed_without_point) both.feed.reset();
   if (a.spindle_speed != b.spindle_speed) both.spindle_speed.reset();
+  if (a.path != b.path) both.path = both.path.mode;
   both.stated = lesser_of(a.stated, b.stated);
   return both;
 }

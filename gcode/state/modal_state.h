@@ -9,15 +9,13 @@
 #include <string_view>
 
 #include "gcode/state/block_words.h"
+#include "gcode/state/path_control.h"
 #include "gcode/state/stated_tolerance.h"
 #include "gcode/text/number_format.h"
 #include "geometry/basic/point.h"
 #include "geometry/basic/rounding.h"
 
 namespace batten::gcode {
-
-// Inch to millimetre.
-inline constexpr double kMillimetresPerInch = 25.4;
 
 class OwnWords;  // gcode/state/own_words.h
 
@@ -28,7 +26,7 @@ struct ModalState {
   DistanceMode distance = DistanceMode::kAbsolute;
   DistanceMode arc_distance = DistanceMode::kIncremental;  // G91.1; G90.1 is absolute
   FeedMode feed_mode = FeedMode::kPerMinute;
-  PathMode path = PathMode::kBlending;
+  PathControl path;
   TriState cutter_compensation = TriState::kOff;     // G41, G42 (any form)
   TriState tool_center_point = TriState::kOff;       // G43.4, G43.5, TRAORI, M128, FUNCTION TCPM
   TriState tilted_plane = TriState::kOff;            // G68.2, CYCLE800, PLANE

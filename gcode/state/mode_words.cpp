@@ -10,6 +10,7 @@ template <auto kItem, auto kUnknown>
 bool is_unknown(const ModalState& state) {
   return state.*kItem == kUnknown;
 }
+bool is_path_unknown(const ModalState& state) { return state.path.mode == PathMode::kUnknown; }
 template <auto kItem>
 constexpr auto kSwitch = &is_unknown<kItem, TriState::kUnknown>;
 
@@ -23,7 +24,7 @@ constexpr std::array kModeWords = {
               "", ""},
     ModeWords{&is_unknown<&Modal::feed_mode, FeedMode::kUnknown>, "feed mode", "G94", "G94",
               "M137"},
-    ModeWords{&is_unknown<&Modal::path, PathMode::kUnknown>, "path mode", "G64", "G64", ""},
+    ModeWords{&is_path_unknown, "path mode", "G64", "G64", ""},
     ModeWords{kSwitch<&Modal::cutter_compensation>, "cutter compensation", "G40", "G40", "R0"},
     ModeWords{kSwitch<&Modal::tool_center_point>, "tool centre point control", "G49", "TRAFOOF",
               "M129, M115, M145 and FUNCTION RESET TCPM"},

@@ -135,7 +135,7 @@ std::string_view different_mode(const ModalState& before, const ModalState& afte
   if (before.distance != after.distance) return "distance mode";
   if (before.arc_distance != after.arc_distance) return "arc distance mode";
   if (before.feed_mode != after.feed_mode) return "feed mode";
-  if (before.path != after.path) return "path mode";
+  if (before.path.mode != after.path.mode) return "path mode";
   if (const std::string_view item = different_switch(before, after); !item.empty()) return item;
   if (before.spindle_speed != after.spindle_speed) return "spindle speed";
   return {};

@@ -535,7 +535,7 @@ void ProgramSpeeds::add_chain(const ReadProgram& read, const Cut* begin, const C
   }
   if (pieces.empty()) return;
   const std::uint32_t block = meaning.motions[begin->motion].block;
-  const gcode::PathMode path = meaning.states[meaning.blocks[block].state_after].path;
+  const gcode::PathControl& path = meaning.states[meaning.blocks[block].state_after].path;
   const StretchChain chain = stretches_of(with_length_and_feed(pieces, machine), machine, path,
                                           ChainEnd::kStop, WithPositions::kYes);
   Ways ways(chain, ends);

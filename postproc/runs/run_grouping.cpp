@@ -74,8 +74,9 @@ std::string_view unsafe_mode(const ModalState& state, const GroupingOptions& opt
   if (state.distance == gcode::DistanceMode::kIncremental) return reason::kIncremental;
   if (state.feed_mode == gcode::FeedMode::kInverseTime) return reason::kInverseTime;
   if (state.feed_mode == gcode::FeedMode::kPerRevolution) return reason::kFeedPerRevolution;
-  if (state.path == gcode::PathMode::kExactStop ||
-      (state.path == gcode::PathMode::kExactPath && !is_allowed(reason::kExactStop, options))) {
+  if (state.path.mode == gcode::PathMode::kExactStop ||
+      (state.path.mode == gcode::PathMode::kExactPath &&
+       !is_allowed(reason::kExactStop, options))) {
     return reason::kExactStop;
   }
   return {};

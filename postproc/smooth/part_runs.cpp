@@ -132,7 +132,7 @@ class BoundaryTiming {
     return moves_from(part_.program, part_.meaning, block, window_end(block));
   }
 
-  [[nodiscard]] Times times_about(std::uint32_t block, gcode::PathMode path) const {
+  [[nodiscard]] Times times_about(std::uint32_t block, const gcode::PathControl& path) const {
     std::vector<TimedPiece> moves = before(block);
     const std::vector<TimedPiece> rest = after(block);
     moves.insert(moves.end(), rest.begin(), rest.end());

@@ -19,8 +19,8 @@ namespace batten::postproc {
                                      CandidateScope scope = CandidateScope::kToChoose,
                                      RunMemo* memo = nullptr);
 
-// The same for a repeat of a run that was smoothed with CandidateScope::kToRepeat, `offset` (mm) away
-// (postproc/smooth/repeated_runs.h). Nothing where a candidate of that cannot be said there.
+// The same for a repeat of a run that was smoothed with CandidateScope::kToRepeat, `offset` (mm)
+// away (postproc/smooth/repeated_runs.h). Nothing where a candidate of that cannot be said there.
 [[nodiscard]] std::optional<SmoothedRun> smooth_repeat(const Run& run, const RunContext& context,
                                                        const SmoothOptions& options,
                                                        const SmoothedRun& first,
@@ -54,7 +54,7 @@ struct RunState {
 
 struct CutRun {  // into pieces, which follow each other in the list of works
   Run run;       // the whole
-  gcode::PathMode path = gcode::PathMode::kUnknown;
+  gcode::PathControl path;
   std::optional<RunFacts> facts = {};  // where the whole was smoothed first
   std::string_view reason = {};        // why the whole was kept then
   Outlook outlook = {};

@@ -30,9 +30,9 @@ void add_to(ExploredFigures& sum, const ExploredFigures& part) {
 
 // From rest to rest; where runs were cut from a long one only the ratios count.
 void add_times_at_feeds(const PartRuns& runs, const Machine& machine, ExploredFigures& sum) {
-  const auto add = [&](const std::vector<TimedPiece>& chain, gcode::PathMode path) {
+  const auto add = [&](const std::vector<TimedPiece>& chain, const gcode::PathControl& path) {
     for (std::size_t i = 0; i < sum.at_feeds.size(); ++i) {
-      sum.at_feeds[i] += TimedChain(chain, machine, kExploredFeeds[i]).time(machine, path);
+      sum.at_feeds[i] += TimedChain(chain, machine, kExploredFeeds[i]).time(path);
     }
   };
   for (std::size_t i = 0; i < runs.works.size(); ++i) {

@@ -24,7 +24,7 @@ double least_below(double time, const Run& run, double tolerance, const Machine&
   return std::min(time, least_time(run, tolerance, machine, kind, LimitsOf::kAnyDirection));
 }
 
-BoundedTime bounded(const Run& run, gcode::PathMode path, const Machine& machine,
+BoundedTime bounded(const Run& run, const gcode::PathControl& path, const Machine& machine,
                     std::optional<double> tolerance_mm) {
   BoundedTime bounded;
   bounded.time = times_of(timed_pieces(run, 0, run.points.size() - 1), machine, path).programmed;

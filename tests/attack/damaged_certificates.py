@@ -434,7 +434,7 @@ def corners(batten, folder):
     findings = []
     for seed, control in [(73, "siemens"), (230, "linuxcnc"), (283, "linuxcnc"), (293, "siemens"), (373, "linuxcnc")]:
         chance = random.Random(seed)
-        x, y, lines = 0.0, 0.0, ["G21 G17 G90 G94 G64", "G0 X0 Y0 Z5", "G1 Z-1 F300"]
+        x, y, lines = 0.0, 0.0, ["G21 G17 G90 G94", "G0 X0 Y0 Z5", "G1 Z-1 F300"]
         for k in range(chance.choice([4, 6, 10])):
             way = round(chance.choice([0.5, 2, 8]) * chance.uniform(0.5, 1.5), 3) * chance.choice([1, 1, -1])
             feed = " F1000" if k == 0 else ""

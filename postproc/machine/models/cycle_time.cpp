@@ -80,7 +80,7 @@ std::vector<TimedPiece> with_length_and_feed(std::span<const TimedPiece> pieces,
 }
 
 StretchChain stretches_of(std::span<const TimedPiece> pieces, const Machine& machine,
-                          gcode::PathMode path, ChainEnd end, WithPositions places) {
+                          const gcode::PathControl& path, ChainEnd end, WithPositions places) {
   require_usable(machine);
   switch (machine.model) {
     case ControllerModel::kLinuxcnc:
@@ -103,26 +103,26 @@ bool takes_a_plan(const StretchChain& chain, double time) {
 }
 
 TimedChain::TimedChain(std::span<const TimedPiece> pieces, const Machine& machine,
-                       double feed_override) {
+                       double feed_override)
+    : machine_(machine) {
   require_usable(machine);
   moving_ = with_length_and_feed(pieces, machine, feed_override);
 }
 
-double TimedChain::time(const Machine& machine, gcode::PathMode path, ChainEnd end,
-                        WorthAPlan worth) const {
-  const StretchChain chain = stretches_of(moving_, machine, path, end, WithPositions::kNo);
+double TimedChain::time(const gcode::PathControl& path, ChainEnd end, WorthAPlan worth) const {
+  const StretchChain chain = stretches_of(moving_, machine_, path, end, WithPositions::kNo);
   const double time = profile_time(chain.stretches, chain.rules);
   const double slow = chain.in_slow_curves;
   if (slow < worth.seconds * static_cast<double>(moving_.size()) || slow > worth.share * time ||
       !takes_a_plan(chain, time)) {
     return time;
   }
-  return PlannedMotion(moving_, machine, FeedPlanner::kJerk, path, kQuickPlanDensity).duration();
+  return PlannedMotion(moving_, machine_, FeedPlanner::kJerk, path, kQuickPlanDensity).duration();
 }
 
 double cutting_time(std::span<const TimedPiece> pieces, const Machine& machine,
-                    gcode::PathMode path, ChainEnd end) {
-  return TimedChain(pieces, machine).time(machine, path, end);
+                    const gcode::PathControl& path, ChainEnd end) {
+  return TimedChain(pieces, machine).time(path, end);
 }
 
 }  // namespace batten::postproc

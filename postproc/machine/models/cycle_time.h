@@ -42,20 +42,22 @@ struct StretchChain {
 enum class WithPositions { kNo, kYes };
 
 [[nodiscard]] StretchChain look_ahead_stretches(std::span<const TimedPiece> pieces,
-                                                const Machine& machine, gcode::PathMode path,
+                                                const Machine& machine,
+                                                const gcode::PathControl& path,
                                                 WithPositions places);
 
 [[nodiscard]] StretchChain grbl_stretches(std::span<const TimedPiece> pieces,
-                                          const Machine& machine, gcode::PathMode path,
+                                          const Machine& machine, const gcode::PathControl& path,
                                           WithPositions places);
 
 [[nodiscard]] StretchChain klipper_stretches(std::span<const TimedPiece> pieces,
-                                             const Machine& machine, gcode::PathMode path,
+                                             const Machine& machine, const gcode::PathControl& path,
                                              WithPositions places);
 
 [[nodiscard]] StretchChain linuxcnc_stretches(std::span<const TimedPiece> pieces,
-                                              const Machine& machine, gcode::PathMode path,
-                                              ChainEnd end, WithPositions places);
+                                              const Machine& machine,
+                                              const gcode::PathControl& path, ChainEnd end,
+                                              WithPositions places);
 
 // Seconds from rest to rest. `path` says whether the control blends or keeps the exact path.
 // Pieces without length take no time. Linear cost.
@@ -63,7 +65,7 @@ enum class WithPositions { kNo, kYes };
 // Throws std::invalid_argument when a limit of the machine that its model needs is not
 // above 0, or a feed is negative or not a number.
 [[nodiscard]] double cutting_time(std::span<const TimedPiece> pieces, const Machine& machine,
-                                  gcode::PathMode path, ChainEnd end = ChainEnd::kStop);
+                                  const gcode::PathControl& path, ChainEnd end = ChainEnd::kStop);
 
 // Whether slow bends of curves are more than a hundredth of the `time` (s) of the chain: then the
 // least-time plan (planned_chain.h) tells its time, with kQuickPlanDensity.
@@ -83,16 +85,17 @@ inline constexpr WorthAPlan kNoPlan = {.seconds = std::numeric_limits<double>::i
 // is done once.
 class TimedChain {
  public:
-  // With every feed so many times the programmed one. Throws as cutting_time does.
+  // With every feed so many times the programmed one. Throws as cutting_time does. `machine` must
+  // live as long.
   TimedChain(std::span<const TimedPiece> pieces, const Machine& machine, double feed_override = 1);
 
-  // As cutting_time. `machine` may differ from that of the chain in what it makes of corners and
-  // of lines that it joins, not in its limits. Where no plan is worth it, it is the time of the
-  // stretches, whose slow bends are too slow.
-  [[nodiscard]] double time(const Machine& machine, gcode::PathMode path,
-                            ChainEnd end = ChainEnd::kStop, WorthAPlan worth = {}) const;
+  // As cutting_time. Where no plan is worth it, it is the time of the stretches, whose slow bends
+  // are too slow.
+  [[nodiscard]] double time(const gcode::PathControl& path, ChainEnd end = ChainEnd::kStop,
+                            WorthAPlan worth = {}) const;
 
  private:
+  const Machine& machine_;
   std::vector<TimedPiece> moving_;
 };
 
@@ -103,6 +106,7 @@ class TimedChain {
 
 // The chain as the machine's model has it. Throws as cutting_time does.
 [[nodiscard]] StretchChain stretches_of(std::span<const TimedPiece> pieces, const Machine& machine,
-                                        gcode::PathMode path, ChainEnd end, WithPositions places);
+                                        const gcode::PathControl& path, ChainEnd end,
+                                        WithPositions places);
 
 }  // namespace batten::postproc

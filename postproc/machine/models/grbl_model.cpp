@@ -152,7 +152,7 @@ class StepGrid {
 }  // namespace
 
 StretchChain grbl_stretches(std::span<const TimedPiece> pieces, const Machine& machine,
-                            gcode::PathMode path, WithPositions places) {
+                            const gcode::PathControl& path, WithPositions places) {
   StretchChain chain;
   // The block that runs stays in the planner until it has ended: beyond the joint after it there is
   // one block less.
@@ -185,7 +185,7 @@ StretchChain grbl_stretches(std::span<const TimedPiece> pieces, const Machine& m
       if (way.norm() <= geometry::kSamePlace) continue;
       const Vector3 direction = way.normalized();
       if (before) {
-        const bool stops = path == gcode::PathMode::kExactStop && k == 1;
+        const bool stops = path.mode == gcode::PathMode::kExactStop && k == 1;
         chain.stretches.back().exit_velocity =
             stops ? 0 : joint.between(*before, direction, way.norm());
       }

@@ -151,7 +151,7 @@ bool is_lost(const geometry::Arc& arc) {
 }  // namespace
 
 StretchChain klipper_stretches(std::span<const TimedPiece> pieces, const Machine& machine,
-                               gcode::PathMode path, WithPositions places) {
+                               const gcode::PathControl& path, WithPositions places) {
   const KlipperLimits limits(machine);
   StretchChain chain;
   std::vector<KlipperMove> moves;
@@ -172,7 +172,7 @@ StretchChain klipper_stretches(std::span<const TimedPiece> pieces, const Machine
       const double length = way.norm();
       if (length <= geometry::kSamePlace) continue;
       KlipperMove move = move_of(way, length, feed, limits);
-      if (!moves.empty() && !(k == 1 && path == gcode::PathMode::kExactStop)) {
+      if (!moves.empty() && !(k == 1 && path.mode == gcode::PathMode::kExactStop)) {
         const KlipperMove& before = moves.back();
         limit_start(before, move, corner_square(before, move, limits.corner_deviation));
       }

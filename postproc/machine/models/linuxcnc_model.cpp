@@ -201,10 +201,11 @@ Joint joint_of(PathMode path) {
 
 class Queue {
  public:
-  Queue(const Machine& machine, PathMode path, WithPositions places)
+  Queue(const Machine& machine, const gcode::PathControl& path, WithPositions places)
       : machine_(machine),
+        blend_tolerance_(path.blend_tolerance.value_or(machine.blend_tolerance)),
         limits_(space_limits(machine)),
-        joint_(joint_of(path)),
+        joint_(joint_of(path.mode)),
         wants_places_(places == WithPositions::kYes) {
     chain_.rules.look_ahead = machine_.look_ahead;
     chain_.rules.ramp_time = kRampTime;
@@ -362,7 +363,7 @@ class Queue {
   // acceleration on both sides.
   void blend(Segment& next, const PathPiece& path) {
     Segment& last = moves_.back();
-    const double tolerance = machine_.blend_tolerance;
+    const double tolerance = blend_tolerance_;
     const double parabolic = parabolic_velocity(last, next, tolerance);
     const double half_turn_cos =
         std::sqrt(std::max(0.0, (1 + last.end_direction.dot(next.start_direction)) / 2));
@@ -442,6 +443,7 @@ class Queue {
   }
 
   const Machine& machine_;
+  double blend_tolerance_;  // mm
   SpaceLimits limits_;
   Joint joint_;
   bool wants_places_;
@@ -457,10 +459,12 @@ class Queue {
 namespace {
 
 StretchChain stretches_in_one(std::span<const TimedPiece> pieces, const Machine& machine,
-                              gcode::PathMode path, ChainEnd end, WithPositions places) {
+                              const gcode::PathControl& path, ChainEnd end, WithPositions places) {
   linuxcnc::Queue queue(machine, path, places);
-  const bool joins = path != gcode::PathMode::kExactStop && path != gcode::PathMode::kExactPath;
-  const double tolerance = joins ? machine.naive_cam_tolerance : 0;
+  const bool joins =
+      path.mode != gcode::PathMode::kExactStop && path.mode != gcode::PathMode::kExactPath;
+  const double tolerance =
+      joins ? path.naive_cam_tolerance.value_or(machine.naive_cam_tolerance) : 0;
   for (const auto& move : linuxcnc::join_within(linuxcnc::curves_as_arcs(pieces), tolerance)) {
     queue.add(move);
   }
@@ -471,7 +475,8 @@ StretchChain stretches_in_one(std::span<const TimedPiece> pieces, const Machine&
 
 // A speed of the spindle, the one that holds as well, waits for the motion before it to end.
 StretchChain linuxcnc_stretches(std::span<const TimedPiece> pieces, const Machine& machine,
-                                gcode::PathMode path, ChainEnd end, WithPositions places) {
+                                const gcode::PathControl& path, ChainEnd end,
+                                WithPositions places) {
   StretchChain chain;
   std::size_t first = 0;
   do {

@@ -122,7 +122,7 @@ double joint_velocity(const TimedPiece& before, const TimedPiece& after, const M
 }  // namespace
 
 StretchChain look_ahead_stretches(std::span<const TimedPiece> pieces, const Machine& machine,
-                                  gcode::PathMode path, WithPositions places) {
+                                  const gcode::PathControl& path, WithPositions places) {
   StretchChain chain;
   chain.rules.look_ahead = machine.look_ahead;
   const bool all_stop = stops_at_block_ends(machine, path);

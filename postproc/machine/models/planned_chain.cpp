@@ -233,7 +233,7 @@ std::vector<JerkPhase> by_s_curves(std::span<const TimedPiece> pieces, const Mac
 }  // namespace
 
 PlannedMotion::PlannedMotion(std::span<const TimedPiece> pieces, const Machine& machine,
-                             FeedPlanner planner, gcode::PathMode path, double density)
+                             FeedPlanner planner, const gcode::PathControl& path, double density)
     : pieces_(pieces) {
   if (planner == FeedPlanner::kControl) {
     throw std::invalid_argument("PlannedMotion: the model of a control is no plan");
@@ -294,7 +294,8 @@ std::vector<PlannedPiece> PlannedMotion::times_of_pieces() const {
 }
 
 std::vector<PlannedPiece> planned_chain(std::span<const TimedPiece> pieces, const Machine& machine,
-                                        FeedPlanner planner, gcode::PathMode path, double density) {
+                                        FeedPlanner planner, const gcode::PathControl& path,
+                                        double density) {
   return PlannedMotion(pieces, machine, planner, path, density).times_of_pieces();
 }
 

@@ -51,7 +51,7 @@ class PlannedMotion {
   // kControl.
   // tests/bench/feed_plan_cost prints how many pieces a second kJerk plans.
   PlannedMotion(std::span<const TimedPiece> pieces, const Machine& machine, FeedPlanner planner,
-                gcode::PathMode path = gcode::PathMode::kBlending, double density = kPlanDensity);
+                const gcode::PathControl& path = {}, double density = kPlanDensity);
 
   [[nodiscard]] double duration() const { return duration_; }  // s
 
@@ -73,8 +73,9 @@ class PlannedMotion {
 };
 
 // Of each piece of the chain, as PlannedMotion has them.
-[[nodiscard]] std::vector<PlannedPiece> planned_chain(
-    std::span<const TimedPiece> pieces, const Machine& machine, FeedPlanner planner,
-    gcode::PathMode path = gcode::PathMode::kBlending, double density = kPlanDensity);
+[[nodiscard]] std::vector<PlannedPiece> planned_chain(std::span<const TimedPiece> pieces,
+                                                      const Machine& machine, FeedPlanner planner,
+                                                      const gcode::PathControl& path = {},
+                                                      double density = kPlanDensity);
 
 }  // namespace batten::postproc

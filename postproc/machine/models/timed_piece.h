@@ -19,6 +19,6 @@ struct TimedPiece {
 
 // Whether the control comes to rest at the end of every block, even where the path runs straight
 // on: under exact stop, and under G61 where that is another word for it.
-[[nodiscard]] bool stops_at_block_ends(const Machine& machine, gcode::PathMode path);
+[[nodiscard]] bool stops_at_block_ends(const Machine& machine, const gcode::PathControl& path);
 
 }  // namespace batten::postproc

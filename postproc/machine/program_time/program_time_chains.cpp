@@ -22,7 +22,7 @@ double RunChain::length_of(const StretchPlace& place) const {
   return length;
 }
 
-void ChainCutter::add(const ProgramStep& step, const std::vector<PathControl>& controls,
+void ChainCutter::add(const ProgramStep& step, const std::vector<gcode::PathControl>& controls,
                       const Use& use) {
   sent_ += static_cast<int>(step.bytes);
   if (is_motion(step.kind)) {
@@ -41,24 +41,24 @@ void ChainCutter::add(const ProgramStep& step, const std::vector<PathControl>& c
 double ChainCutter::seconds_of(const ProgramStep& step) const {
   switch (step.kind) {
     case StepKind::kToolChange:
-      return base_.tool_change_time;
+      return machine_.tool_change_time;
     case StepKind::kSpindle:
-      return base_.spindle_start_time;
+      return machine_.spindle_start_time;
     case StepKind::kDwell:
-      return step.seconds + base_.extra_dwell_time;
+      return step.seconds + machine_.extra_dwell_time;
     default:
       return step.seconds;
   }
 }
 
-void ChainCutter::add_motion(const ProgramStep& step, const std::vector<PathControl>& controls,
-                             const Use& use) {
+void ChainCutter::add_motion(const ProgramStep& step,
+                             const std::vector<gcode::PathControl>& controls, const Use& use) {
   if (geometry::length_of(step.piece) <= geometry::kSamePlace) return;
   const bool rapid = step.kind == StepKind::kRapid;
-  const PathControl& control = controls[step.control];
+  const gcode::PathControl& control = controls[step.control];
   if (!chain_.pieces.empty()) {
     const bool class_changes = chain_.pieces.back().rapid != rapid;
-    if (class_changes && rests_between_rapids_and_cuts(base_)) close(ChainEnd::kStop, use);
+    if (class_changes && rests_between_rapids_and_cuts(machine_)) close(ChainEnd::kStop, use);
     if (control != control_) close(ChainEnd::kStop, use);
   }
   control_ = control;
@@ -81,10 +81,9 @@ void ChainCutter::close(ChainEnd end, const Use& use) {
 }
 
 void ChainCutter::use_part(ChainEnd end, std::size_t end_counted, const Use& use) {
-  machine_.blend_tolerance = control_.blend_tolerance.value_or(base_.blend_tolerance);
-  machine_.naive_cam_tolerance = control_.naive_cam_tolerance.value_or(base_.naive_cam_tolerance);
   chain_.pieces = with_length_and_feed(chain_.pieces, machine_);
-  chain_.path = control_.mode == gcode::PathMode::kUnknown ? base_.path_mode : control_.mode;
+  chain_.path = control_;
+  if (control_.mode == gcode::PathMode::kUnknown) chain_.path.mode = machine_.path_mode;
   chain_.stretches = stretches_of(chain_.pieces, machine_, chain_.path, end, WithPositions::kYes);
   chain_.end_counted = static_cast<std::uint32_t>(end_counted);
   use(chain_);

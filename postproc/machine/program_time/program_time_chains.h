@@ -18,12 +18,12 @@ namespace batten::postproc {
 
 // Motions from rest to rest, or one wait.
 struct RunChain {
-  StepKind wait = StepKind::kRest;                    // meaningful where there are no pieces
-  double seconds = 0;                                 // of the wait
-  std::vector<TimedPiece> pieces;                     // each with a length and a feed
-  std::vector<std::size_t> steps;                     // the step of each piece; of a wait its own
-  gcode::PathMode path = gcode::PathMode::kBlending;  // that holds
-  StretchChain stretches;                             // with places
+  StepKind wait = StepKind::kRest;  // meaningful where there are no pieces
+  double seconds = 0;               // of the wait
+  std::vector<TimedPiece> pieces;   // each with a length and a feed
+  std::vector<std::size_t> steps;   // the step of each piece; of a wait its own
+  gcode::PathControl path;          // that holds
+  StretchChain stretches;           // with places
   std::uint32_t first_counted = 0;  // pieces of a part of a longer chain that count here
   std::uint32_t end_counted = 0;
 
@@ -52,9 +52,10 @@ class ChainCutter {
   // A chain of `most_pieces` or more is used in parts that overlap: kMargin pieces from its ends a
   // part moves as the whole. No control looks further ahead, no machine takes longer to its speed.
   ChainCutter(const Machine& machine, std::size_t most_pieces)
-      : machine_(machine), base_(machine), most_pieces_(most_pieces) {}
+      : machine_(machine), most_pieces_(most_pieces) {}
 
-  void add(const ProgramStep& step, const std::vector<PathControl>& controls, const Use& use);
+  void add(const ProgramStep& step, const std::vector<gcode::PathControl>& controls,
+           const Use& use);
   void finish(const Use& use) { close(ChainEnd::kEndOfMotion, use); }
 
   static constexpr std::uint32_t kMargin = 1024;
@@ -62,16 +63,15 @@ class ChainCutter {
 
  private:
   [[nodiscard]] double seconds_of(const ProgramStep& step) const;
-  void add_motion(const ProgramStep& step, const std::vector<PathControl>& controls,
+  void add_motion(const ProgramStep& step, const std::vector<gcode::PathControl>& controls,
                   const Use& use);
   void close(ChainEnd end, const Use& use);
   void use_part(ChainEnd end, std::size_t end_counted, const Use& use);
 
-  Machine machine_;  // with the tolerances that hold for the chain
-  Machine base_;
+  Machine machine_;
   std::size_t most_pieces_;
   RunChain chain_;
-  PathControl control_;
+  gcode::PathControl control_;
   std::size_t steps_ = 0;  // that were added
   int sent_ = 0;           // bytes since the last piece
 };

@@ -106,7 +106,7 @@ namespace {
 class StepWork {
  public:
   explicit StepWork(const StepOptions& options) : options_(options), has_m6_(options.has_m6) {
-    read_.controls.emplace_back();
+    read_.controls.emplace_back(PathMode::kUnknown);
     if (options.start) place_.set(*options.start);
   }
 
@@ -329,17 +329,7 @@ class StepWork {
   }
 
   void set_control(PathMode mode, const BlockWords& words) {
-    PathControl control;
-    control.mode = mode;
-    if (mode == PathMode::kBlending) {
-      const double unit = state().units == gcode::Units::kInch ? gcode::kMillimetresPerInch : 1;
-      const auto value = [&](char letter, double otherwise) {
-        const gcode::Word* word = words.find(letter);
-        return word != nullptr && word->is_number ? std::max(0.0, word->value * unit) : otherwise;
-      };
-      control.blend_tolerance = value('P', 0);
-      control.naive_cam_tolerance = value('Q', *control.blend_tolerance);
-    }
+    const gcode::PathControl control = gcode::path_control_of(mode, words, state().units);
     const auto known = std::ranges::find(read_.controls, control);
     control_ = static_cast<std::uint16_t>(known - read_.controls.begin());
     if (known == read_.controls.end()) read_.controls.push_back(control);

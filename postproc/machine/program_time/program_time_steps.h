@@ -49,14 +49,6 @@ class NotTimedList {
   std::vector<NotTimed> entries_;
 };
 
-// How joints of motions are passed: what G61, G61.1 and G64 P Q say.
-struct PathControl {
-  gcode::PathMode mode = gcode::PathMode::kUnknown;  // kUnknown: the program has not said
-  std::optional<double> blend_tolerance;             // mm, P; set by every G64 (0: without P)
-  std::optional<double> naive_cam_tolerance;         // mm, Q
-  bool operator==(const PathControl&) const = default;
-};
-
 struct ProgramStep {
   StepKind kind = StepKind::kRest;
   bool stops_after = false;     // G9: exact stop of this block
@@ -82,7 +74,7 @@ struct StepOptions {
 
 struct ProgramSteps {
   std::vector<ProgramStep> steps;
-  std::vector<PathControl> controls;  // [0]: the program has said nothing
+  std::vector<gcode::PathControl> controls;  // [0]: the program has said nothing: kUnknown
   NotTimedList not_timed;
 };
 

@@ -17,8 +17,8 @@ constexpr double kOneAndHalf = 1.5;
 class OverriddenTimes {
  public:
   // All must live as long.
-  OverriddenTimes(std::span<const TimedPiece> chain, const Machine& machine, gcode::PathMode path,
-                  WorthAPlan worth)
+  OverriddenTimes(std::span<const TimedPiece> chain, const Machine& machine,
+                  const gcode::PathControl& path, WorthAPlan worth)
       : chain_(chain), machine_(machine), path_(path), programmed_(at(1, worth)) {}
 
   [[nodiscard]] double programmed() const { return programmed_; }
@@ -33,13 +33,12 @@ class OverriddenTimes {
 
  private:
   [[nodiscard]] double at(double feed_override, WorthAPlan worth) const {
-    return TimedChain(chain_, machine_, feed_override)
-        .time(machine_, path_, ChainEnd::kStop, worth);
+    return TimedChain(chain_, machine_, feed_override).time(path_, ChainEnd::kStop, worth);
   }
 
   std::span<const TimedPiece> chain_;
   const Machine& machine_;
-  gcode::PathMode path_;
+  gcode::PathControl path_;
   double programmed_;
 };
 
@@ -49,8 +48,8 @@ double control_period(const Machine& machine) {
   return std::max(machine.block_period, machine.servo_period);
 }
 
-Times times_of(std::span<const TimedPiece> chain, const Machine& machine, gcode::PathMode path,
-               WorthAPlan worth) {
+Times times_of(std::span<const TimedPiece> chain, const Machine& machine,
+               const gcode::PathControl& path, WorthAPlan worth) {
   const OverriddenTimes all(chain, machine, path, worth);
   Times times;
   times.programmed = all.programmed();

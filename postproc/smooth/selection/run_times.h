@@ -12,7 +12,7 @@ namespace batten::postproc {
 
 // Of a chain from rest to rest. `path`: as the program says. Throws as cutting_time does.
 [[nodiscard]] Times times_of(std::span<const TimedPiece> chain, const Machine& machine,
-                             gcode::PathMode path, WorthAPlan worth = kAmongForms);
+                             const gcode::PathControl& path, WorthAPlan worth = kAmongForms);
 
 // Of a run between its neighbours: what it adds to the time that they take alone. From rest to rest
 // where it has none.

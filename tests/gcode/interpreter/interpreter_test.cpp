@@ -271,5 +271,22 @@ TEST(Interpreter, ReportsAnUnknownCodeOnceAndCountsWhatIsTooMuch) {
   EXPECT_EQ(it.found.back().message, "this and 9 more blocks after it have the same trouble");
 }
 
+// What P and Q say holds until the next of these words.
+TEST(Interpreter, KnowsHowFarABlendMayLeaveTheJoints) {
+  const auto after = [](const std::string& words) {
+    return Interpreted("G21 G90 G17\n" + words + "\n").last_state().path;
+  };
+  EXPECT_EQ(after("G1 X1 F100").blend_tolerance, std::nullopt);
+  EXPECT_EQ(after("G64").blend_tolerance, 0);
+  EXPECT_EQ(after("G64").naive_cam_tolerance, 0);
+  EXPECT_EQ(after("G64 P0.05").blend_tolerance, 0.05);
+  EXPECT_EQ(after("G64 P0.05").naive_cam_tolerance, 0.05);
+  EXPECT_EQ(after("G64 P0.05 Q0.01").naive_cam_tolerance, 0.01);
+  EXPECT_EQ(after("G20 G64 P0.01").blend_tolerance, 0.254);
+  EXPECT_EQ(after("G64 P0.05\nG64").blend_tolerance, 0);
+  EXPECT_EQ(after("G64 P0.05\nG61").blend_tolerance, std::nullopt);
+  EXPECT_EQ(after("G64 P0.05\nM98 P1").blend_tolerance, std::nullopt);
+}
+
 }  // namespace
 }  // namespace batten::gcode

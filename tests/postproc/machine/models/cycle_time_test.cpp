@@ -543,8 +543,6 @@ TEST(GrblPlanner, LosesFullCirclesThatItsSinglePrecisionTakesForNothing) {
 TEST(TimedChain, GivesTheTimesOfCuttingTime) {
   for (const char* name : {"linuxcnc", "router", "grbl"}) {
     const Machine& machine = *find_machine(name);
-    Machine unmerged = machine;
-    unmerged.naive_cam_tolerance = 0;
     for (unsigned seed = 0; seed < 5; ++seed) {
       SCOPED_TRACE(testing::Message() << name << " " << seed);
       std::vector<TimedPiece> pieces = random_chain(seed);
@@ -552,15 +550,17 @@ TEST(TimedChain, GivesTheTimesOfCuttingTime) {
       pieces[2].feed = 0;
       pieces.insert(pieces.begin() + 3, line({1, 1, 1}, {1, 1, 1}));
       TimedChain chain(pieces, machine);
-      for (const PathMode path : {PathMode::kBlending, PathMode::kExactPath}) {
-        EXPECT_EQ(chain.time(machine, path), cutting_time(pieces, machine, path));
-        EXPECT_EQ(chain.time(unmerged, path), cutting_time(pieces, unmerged, path));
-        EXPECT_EQ(chain.time(machine, path, ChainEnd::kEndOfMotion),
+      gcode::PathControl unmerged = PathMode::kBlending;
+      unmerged.naive_cam_tolerance = 0;
+      for (const gcode::PathControl& path : {gcode::PathControl(PathMode::kBlending),
+                                             gcode::PathControl(PathMode::kExactPath), unmerged}) {
+        EXPECT_EQ(chain.time(path), cutting_time(pieces, machine, path));
+        EXPECT_EQ(chain.time(path, ChainEnd::kEndOfMotion),
                   cutting_time(pieces, machine, path, ChainEnd::kEndOfMotion));
       }
       std::vector<TimedPiece> slower = pieces;
       for (TimedPiece& piece : slower) piece.feed *= 0.5;
-      EXPECT_EQ(TimedChain(pieces, machine, 0.5).time(machine, PathMode::kBlending),
+      EXPECT_EQ(TimedChain(pieces, machine, 0.5).time(PathMode::kBlending),
                 cutting_time(slower, machine, PathMode::kBlending));
     }
   }

@@ -1,7 +1,11 @@
 // What a run takes where it is, at three settings of the feed override.
 #include "postproc/smooth/selection/run_times.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+
+#include <tuple>
+#include <utility>
 
 #include "postproc/runs/run_path.h"
 #include "tests/support/one_run.h"
@@ -47,6 +51,35 @@ TEST(RunTimes, FollowTheOverrideAsFarAsTheMachineCan) {
     for (TimedPiece& each : overridden) each.feed *= feed_override;
     EXPECT_EQ(cutting_time(overridden, machine, gcode::PathMode::kBlending), expected);
   }
+}
+
+// Steps of a staircase, each shorter than what a control that may leave them rounds off.
+std::string stairs_after(const std::string& path_words) {
+  std::string text = head("G21") + path_words + "\nG1 F2500\n";
+  for (int i = 1; i <= 200; ++i) {
+    text += fmt::format("X{:.1f} Y{:.1f}\n", 0.1 * ((i + 1) / 2), 0.1 * (i / 2));
+  }
+  return text + tail();
+}
+
+// A path tolerance of the program counts, not the one that the machine starts with.
+TEST(RunTimes, AreThoseUnderTheTolerancesOfG64) {
+  SmoothOptions options = options_for("linuxcnc");
+  const auto before = [&](const std::string& words) {
+    return smoothed(stairs_after(words), options).runs_before_s;
+  };
+  for (const auto& [words, tolerances] : {std::pair{"G64", std::pair{0.0, 0.0}},
+                                          {"G64 P0.02", {0.02, 0.02}},
+                                          {"G64 P0.02 Q0", {0.02, 0}},
+                                          {"G64 P0.002 Q0.001", {0.002, 0.001}}}) {
+    SCOPED_TRACE(words);
+    Machine machine = *options.machine;
+    std::tie(machine.blend_tolerance, machine.naive_cam_tolerance) = tolerances;
+    const OneRun run(stairs_after(""));
+    const std::vector<TimedPiece> motions = timed_pieces(run.run(), 0, run.run().points.size() - 1);
+    EXPECT_EQ(before(words), cutting_time(motions, machine, gcode::PathMode::kBlending));
+  }
+  EXPECT_GT(before("G64 P0.002"), 1.2 * before("G64"));
 }
 
 }  // namespace
