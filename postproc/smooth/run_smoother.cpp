@@ -32,7 +32,7 @@ struct RunTuning {
   double side_margin = 0.25;  // of the form's share, on the side where the run must not be cut
   double far_fewer = 0.7;     // of the blocks that there were
   // Part of the time, of a run of corners: the least that there must be left to win by a curve that
-  // rounds them. Nothing brakes in the bound of the time, and all of them do.
+  // rounds them. Little brakes in the bound of the time, and all of them do.
   double left_at_corners = 0.07;
   double sharp_corner = 30 * geometry::kPi / 180;  // radians: corners that turn more may stay
   // So many of the pieces are reverted at once that a long run is timed a few times only.
@@ -208,9 +208,12 @@ class RunSmoother {
     if (options().side != geometry::Side::kBoth || options().prefer == Prefer::kAccuracy) return;
     if (context().is_piece() || !std::isfinite(options().machine->max_jerk())) return;
     if (corner_part() >= kBounds.corners) return;
-    const CurveRequest request = curve_request(Method::kTube);
+    CurveRequest request = curve_request(Method::kTube);
     const double least = std::max(bounds_.least_time(), straight_time(fair_->curve, request));
     if (!tube_is_worth_trying(run().points.size(), least, best_time())) return;
+    // What several settings share does not depend on what one of them has found.
+    const bool all = task_.scope == CandidateScope::kAll || task_.memo != nullptr;
+    if (!all) request.rival = best_time();
     try_curve(Method::kTube, request);
   }
 
@@ -316,7 +319,8 @@ WorthAPlan worth_a_plan(const Run& run, const RunContext& context, const SmoothO
   }
   const double alone =
       cutting_time(timed_pieces(run, 0, run.points.size() - 1), machine, context.after.path);
-  const double least = least_time(run, tolerance, machine, options.tolerance_kind);
+  const double least =
+      least_time(run, tolerance, machine, context.after.path, options.tolerance_kind);
   return tube_is_worth_trying(run.points.size(), least, alone)
              ? WorthAPlan{.share = kAmongForms.share}
              : kAmongForms;

@@ -17,21 +17,22 @@ namespace {
 
 // A control that joins lines runs faster than each of them allows, and one that blends corners cuts
 // them: then less is known.
-double least_below(double time, const Run& run, double tolerance, const Machine& machine) {
+double least_below(double time, const Run& run, double tolerance, const Machine& machine,
+                   const gcode::PathControl& path) {
   const auto kind = geometry::ToleranceKind::kPath;
-  const double least = least_time(run, tolerance, machine, kind);
+  const double least = least_time(run, tolerance, machine, path, kind);
   if (least <= time) return least;
-  return std::min(time, least_time(run, tolerance, machine, kind, LimitsOf::kAnyDirection));
+  return std::min(time, least_time(run, tolerance, machine, path, kind, LimitsOf::kAnyDirection));
 }
 
 BoundedTime bounded(const Run& run, const gcode::PathControl& path, const Machine& machine,
                     std::optional<double> tolerance_mm) {
   BoundedTime bounded;
   bounded.time = times_of(timed_pieces(run, 0, run.points.size() - 1), machine, path).programmed;
-  bounded.least_on_path = least_below(bounded.time, run, 0, machine);
+  bounded.least_on_path = least_below(bounded.time, run, 0, machine, path);
   if (tolerance_mm) {
-    bounded.least_within =
-        std::min(bounded.least_on_path, least_below(bounded.time, run, *tolerance_mm, machine));
+    bounded.least_within = std::min(bounded.least_on_path,
+                                    least_below(bounded.time, run, *tolerance_mm, machine, path));
   }
   return bounded;
 }

@@ -35,7 +35,7 @@ struct TimeBounds {
 };
 
 // Of the runs that may be rewritten. The bounds leave out what brakes between the ends of a run
-// (least_time, candidate_bounds.h): a control may be far from them at sharp corners.
+// but for sharp corners (least_time, candidate_bounds.h).
 [[nodiscard]] TimeBounds time_bounds(const gcode::Program& program,
                                      const gcode::Interpretation& meaning, const Machine& machine,
                                      std::optional<double> tolerance_mm);

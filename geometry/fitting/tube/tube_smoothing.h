@@ -94,10 +94,11 @@ struct TubeCandidate {
 [[nodiscard]] std::vector<TubeCandidate> smooth_in_tube(const BsplineCurve& curve,
                                                         const TubeOptions& options);
 
-// The candidates that win most for their cost: the old curve, the least integrals of |C''|^2 and of
-// |C'''|^2, and after the latter one round of curvature and one of estimated time.
-inline constexpr std::array kFewMethods = {TubeMethod::kOriginal, TubeMethod::kBending,
-                                           TubeMethod::kThirdDerivative, TubeMethod::kCurvature,
+// The candidates that win most for their cost: the least integrals of |C'''|^2, whose curve is
+// within some percent of the fastest of them, and of |C''|^2, the old curve, and after the first
+// one round of curvature and one of estimated time.
+inline constexpr std::array kFewMethods = {TubeMethod::kThirdDerivative, TubeMethod::kBending,
+                                           TubeMethod::kOriginal, TubeMethod::kCurvature,
                                            TubeMethod::kQuick};
 
 struct FewInTube {
@@ -108,8 +109,8 @@ struct FewInTube {
 
 // Candidates of `methods`, which are some of kFewMethods, on the knots of the curve; the same of a
 // method whichever others are asked for. Each but the old curve costs a solution of solve_band, and
-// those after the least integral of |C'''|^2 that one, too, once: of kTubeTuning.watched samples
-// for a span and of at most kBandTuning.max_steps steps. `options.halvings` is not looked at.
+// the last two that of the first, too, once: of kTubeTuning.watched samples for a span and of at
+// most kBandTuning.max_steps steps. `options.halvings` is not looked at.
 //
 // Throws as smooth_in_tube does, and for another method.
 [[nodiscard]] FewInTube few_in_tube(const BsplineCurve& curve, const TubeOptions& options,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -112,7 +113,7 @@ std::optional<TubeFit> tube_fit(std::span<const Point3> run, const CurveRequest&
 class TubeWays {
  public:
   TubeWays(const TubeFit& fit, const CurveRequest& request)
-      : fit_(fit), limits_(plan_limits(request)), few_(fit.sections.size()) {
+      : fit_(fit), limits_(plan_limits(request)), rival_(request.rival), few_(fit.sections.size()) {
     options_.radius = fit.radius;
     options_.feed = limits_.feed;
     options_.acceleration = limits_.acceleration.minCoeff();
@@ -123,11 +124,16 @@ class TubeWays {
   }
 
   [[nodiscard]] std::optional<TubeCurve> fastest() {
+    const std::span methods(geometry::kFewMethods);
+    solve_samples(methods.first(1));
+    const double of_first = sampled_time(0);
+    const bool as_a_whole = samples_.size() == 1;
+    if (as_a_whole && of_first > kTube.behind * rival_) return std::nullopt;
+    solve_samples(methods.subspan(1));
     std::optional<std::size_t> best;
     double least = std::numeric_limits<double>::infinity();
-    for (std::size_t k = 0; k < geometry::kFewMethods.size(); ++k) {
-      double time = 0;
-      for (const Sample& sample : samples_) time += planned_time(sample, k);
+    for (std::size_t k = 0; k < methods.size(); ++k) {
+      const double time = k == 0 ? of_first : sampled_time(k);
       if (!(time < least)) continue;
       least = time;
       best = k;
@@ -141,8 +147,7 @@ class TubeWays {
         continue;
       }
       const geometry::TubeCandidate found =
-          few_[i].empty() ? solved(i, std::span(geometry::kFewMethods).subspan(*best, 1)).front()
-                          : few_[i][*best];
+          few_[i].empty() ? solved(i, methods.subspan(*best, 1)).front() : few_[i][*best];
       parts.push_back(found.curve);
       moved = std::max(moved, found.displacement);
     }
@@ -181,10 +186,16 @@ class TubeWays {
         samples_.push_back({from, k + 1 < kTube.samples ? from + each : kEnd});
       }
     }
+  }
+
+  // In each section that a sample is of, once; those of a second call stand behind the first.
+  void solve_samples(std::span<const geometry::TubeMethod> methods) {
+    std::vector<bool> is_solved(fit_.sections.size());
     for (const Sample& sample : samples_) {
       for (std::size_t i = section_at(sample.from); holds(sample, i); ++i) {
-        if (!fit_.sections[i].straight && few_[i].empty())
-          few_[i] = solved(i, geometry::kFewMethods);
+        if (fit_.sections[i].straight || is_solved[i]) continue;
+        is_solved[i] = true;
+        std::ranges::move(solved(i, methods), std::back_inserter(few_[i]));
       }
     }
   }
@@ -217,6 +228,12 @@ class TubeWays {
     return std::move(found.candidates);
   }
 
+  [[nodiscard]] double sampled_time(std::size_t way) {
+    double time = 0;
+    for (const Sample& sample : samples_) time += planned_time(sample, way);
+    return time;
+  }
+
   // s, about: of a sample within the run as if the machine came to it and left it at the feed.
   [[nodiscard]] double planned_time(const Sample& sample, std::size_t way) {
     geometry::Path path;
@@ -247,6 +264,7 @@ class TubeWays {
 
   const TubeFit& fit_;
   KinematicPathLimits limits_;
+  double rival_;  // s
   geometry::TubeOptions options_;
   double longest_line_;               // mm
   std::vector<std::size_t> firsts_;   // piece of the fit that each section begins with, and the end

@@ -26,6 +26,9 @@ struct TubeTuning {
   // About so many nodes are planned of each curve, in so many samples of it where it has more.
   double planned = 2500;
   double samples = 10;
+  // Times of the fastest other form: where the first of geometry::kFewMethods is so slow, the
+  // others are not tried. It is within 3 % of the best of them (docs/algorithms/methods.md).
+  double behind = 1.1;
 };
 inline constexpr TubeTuning kTube;
 
@@ -45,7 +48,8 @@ struct TubeCurve {
 // samples, evenly along it: the work for the plans does not grow with the run, and only the parts
 // that a sample is of are solved by all methods. Linear cost.
 //
-// Nothing as with naseath_curve, and where the machine limits neither acceleration nor jerk.
+// Nothing as with naseath_curve, and where the machine limits neither acceleration nor jerk; and of
+// a run that is planned as a whole where it is far behind `request.rival` (s from rest to rest).
 [[nodiscard]] std::optional<TubeCurve> tube_curve(std::span<const geometry::Point3> run,
                                                   const CurveRequest& request);
 

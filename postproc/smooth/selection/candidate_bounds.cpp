@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -22,7 +24,8 @@ CandidateBounds::CandidateBounds(const RunTask& task, const SmoothedRun& so_far)
 
 double CandidateBounds::least_time_of(LimitsOf of) const {
   return postproc::least_time(task_.run, tolerance_of(task_.run, task_.options.tolerance_mm),
-                              *task_.options.machine, task_.options.tolerance_kind, of);
+                              *task_.options.machine, task_.context.after.path,
+                              task_.options.tolerance_kind, of);
 }
 
 // Of a block in such a form: blocks of one form have about the same words.
@@ -144,6 +147,45 @@ class DirectionLimits {
   LimitsOf of_;
 };
 
+// mm: how far the way of the machine may leave the path that it is told at a corner, where nothing
+// but the bend of that way lets it be faster there. Nothing where short blocks do as well: grbl and
+// Marlin look at each joint alone.
+std::optional<double> rounded_by_control(const Machine& machine, const gcode::PathControl& path) {
+  const double acceleration = machine.max_acceleration();
+  switch (machine.model) {
+    case ControllerModel::kLinuxcnc: {
+      const double blend = path.blend_tolerance.value_or(machine.blend_tolerance);
+      if (!(blend > 0)) return std::nullopt;  // no limit
+      return blend + path.naive_cam_tolerance.value_or(machine.naive_cam_tolerance);
+    }
+    case ControllerModel::kKlipper: {
+      const double speed = machine.square_corner_velocity;
+      return speed * speed * (std::numbers::sqrt2 - 1) / acceleration;
+    }
+    case ControllerModel::kLookAhead:
+      // The velocity changes within a period of the servo, and no block is shorter than its own.
+      if (machine.servo_period > machine.block_period) return std::nullopt;
+      return acceleration * machine.servo_period * machine.servo_period;
+    default:
+      return std::nullopt;
+  }
+}
+
+// mm/s, at which a way passes the corner between two edges that leaves it by `inside` at most
+// within the bend, and the edges by `beside`: the widest circle that does. No limit where the edges
+// are shorter than it reaches.
+double greatest_corner_speed(const Vector3& a, const Vector3& b, double inside, double beside,
+                             const Vector3& accelerations) {
+  const Vector3 before = a.normalized();
+  const Vector3 turn = b.normalized() - before;
+  const double sine = turn.norm() / 2;  // of half the turn
+  if (sine < geometry::kSameDirection) return kNoLimit;
+  const double cosine = std::sqrt(std::max(0.0, 1 - sine * sine));
+  const double radius = (inside * cosine + beside) * (1 + cosine) / (sine * sine);
+  if (radius * sine > std::min(a.norm(), b.norm())) return kNoLimit;
+  return std::sqrt(limit_along(turn.normalized(), accelerations) * radius);
+}
+
 // mm/s along each edge of the run, as programmed.
 std::vector<double> edge_feeds(const Run& run) {
   std::vector<double> feeds(run.points.size() - 1);
@@ -168,16 +210,23 @@ double time_at_feeds(const Run& run, const Machine& machine) {
 }
 
 double least_time(const Run& run, double tolerance, const Machine& machine,
-                  geometry::ToleranceKind kind, LimitsOf of) {
+                  const gcode::PathControl& path, geometry::ToleranceKind kind, LimitsOf of) {
   const auto& p = run.points;
   const std::vector<double> feeds = edge_feeds(run);
   const DirectionLimits limits(machine, of);
+  const Vector3 accelerations = axis_accelerations(machine);
+  const std::optional<double> rounded = rounded_by_control(machine, path);
   std::vector<VelocityStretch> chain;
   chain.reserve(feeds.size());
   for (std::size_t i = 0; i < feeds.size(); ++i) {
     const Vector3 edge = p[i + 1] - p[i];
     const double length = edge.norm();
     const double saved = i > 0 ? saved_at(p[i] - p[i - 1], edge, tolerance, kind) : 0;
+    if (!chain.empty() && rounded) {
+      double& exit = chain.back().exit_velocity;
+      const double far = tolerance + *rounded;
+      exit = std::min(exit, greatest_corner_speed(p[i] - p[i - 1], edge, far, far, accelerations));
+    }
     if (!(length - saved > 0)) continue;
     const PathLimits most = limits.along(edge / length);
     VelocityStretch stretch;

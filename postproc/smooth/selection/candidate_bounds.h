@@ -73,8 +73,11 @@ class CandidateBounds {
 
 // Seconds below which no form of the run comes that stays within `tolerance`: from rest to rest
 // over its length, less what can be saved at its vertices, at its feeds and within the limits of
-// the machine along each edge, or over all directions. Nothing brakes between the ends.
+// the machine along each edge, or over all directions. Nothing brakes between the ends but sharp
+// corners, which no path passes faster than the widest circle within the tolerance and what the
+// control rounds by itself under `path` (docs/algorithms/cycle_time.md, What is left to win).
 [[nodiscard]] double least_time(const Run& run, double tolerance, const Machine& machine,
+                                const gcode::PathControl& path = {},
                                 geometry::ToleranceKind kind = geometry::ToleranceKind::kPath,
                                 LimitsOf of = LimitsOf::kDirections);
 

@@ -60,7 +60,7 @@ TEST(FewInTube, StayInTheTubeForABoundedEffort) {
       const double radius = radius_for(seed);
       const FewInTube few = few_in_tube(curve, tube(radius));
       ASSERT_EQ(few.candidates.size(), 5U);
-      EXPECT_EQ(few.candidates.front().method, TubeMethod::kOriginal);
+      EXPECT_EQ(few.candidates.front().method, kFewMethods.front());
       for (const TubeCandidate& candidate : few.candidates) {
         EXPECT_LE(sampled_displacement(curve, candidate.curve), radius * (1 + 1e-9));
       }

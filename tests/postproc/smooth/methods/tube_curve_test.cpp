@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "geometry/fitting/tube/tube_smoothing.h"
+#include "geometry/path/curve_pieces.h"
+#include "postproc/machine/planner/feed_plan.h"
 
 namespace batten::postproc {
 namespace {
@@ -114,6 +116,22 @@ TEST(TubeCurve, TakesTheSameMethodHoweverFarCornersAre) {
   const auto far = tube_curve(zigzag(61, 200), request);
   EXPECT_NE(near->method, geometry::TubeMethod::kOriginal);
   EXPECT_EQ(near->method, far->method);
+}
+
+// Which the plan of the fit tells, before it is smoothed.
+TEST(TubeCurve, IsLeftOutWhereItIsFarBehindWhatThereIs) {
+  CurveRequest request = request_at(12000);
+  const std::vector<Point3> run = zigzag(61);
+  const auto without = tube_curve(run, request);
+  const geometry::Path path = geometry::beziers_of(without->path.curve);
+  const double time = plan_feed(path, plan_limits(request)).time;
+  request.rival = time / (1.1 * kTube.behind);
+  EXPECT_FALSE(tube_curve(run, request));
+  request.rival = 1.1 * time;
+  const auto faster = tube_curve(run, request);
+  ASSERT_TRUE(faster);
+  EXPECT_EQ(faster->method, without->method);
+  EXPECT_EQ(faster->planned, without->planned);
 }
 
 }  // namespace

@@ -106,7 +106,7 @@ TEST(CandidateBounds, KnowNoDirectionsWhereTheRunItselfIsFasterThanThose) {
   const RunContext context = run.context();
   const SmoothOptions options = options_for("linuxcnc");
   const double along =
-      least_time(run.run(), options.tolerance_mm, *options.machine, options.tolerance_kind);
+      least_time(run.run(), options.tolerance_mm, *options.machine, {}, options.tolerance_kind);
   const auto least_where_it_takes = [&](double seconds) {
     SmoothedRun so_far = run.smooth(options);
     so_far.facts.scale.alone = seconds;

@@ -73,7 +73,7 @@ TEST(LeastTime, KnowsHowFastTheAxesAreTogether) {
   const double speed = std::sqrt(2) * 5;
   EXPECT_NEAR(least_time(diagonal, 0.01, slow), 30 / 5.0 + ramps(speed, a), 1e-12);
   const double any =
-      least_time(diagonal, 0.01, slow, geometry::ToleranceKind::kPath, LimitsOf::kAnyDirection);
+      least_time(diagonal, 0.01, slow, {}, geometry::ToleranceKind::kPath, LimitsOf::kAnyDirection);
   EXPECT_LT(any, 30 / 5.0);
 }
 
@@ -85,6 +85,70 @@ TEST(LeastTime, IsNoMoreThanThatOfTheLineThroughTeeth) {
   const double a = machine().axis(Axis::kX).acceleration;
   EXPECT_LE(least_time(run_through(teeth), 0.06, machine()),
             10.0 + ramps(10, a) + 2 * 0.5 * (std::sqrt(1.01) - 1) / 10 + 1e-9);
+}
+
+// --- sharp corners ---------------------------------------------------------------------------
+
+// Two legs of 10 mm that turn by this, at 6000 mm/min.
+postproc::Run corner_of(double turn) {
+  const Point3 corner(10, 0, 0);
+  return run_through({{0, 0, 0}, corner, corner + 10 * Point3(std::cos(turn), std::sin(turn), 0)},
+                     6000);
+}
+
+// s, for such a corner rounded by an arc that leaves it by `far` (mm), whose bend alone limits the
+// speed on it.
+double rounded_time(double turn, double far, const Machine& machine) {
+  const double half = turn / 2;
+  const double radius = far / (1 / std::cos(half) - 1);
+  const double a = machine.axis(Axis::kX).acceleration;
+  const double speed = std::min(100.0, std::sqrt(a * radius));
+  const double leg = 10 - radius * std::tan(half);
+  const auto ramp = [&](double v) { return v * v / (2 * a); };  // mm, from rest
+  const double peak = std::min(100.0, std::sqrt(a * (leg + ramp(speed))));
+  const double at_feed = leg - 2 * ramp(peak) + ramp(speed);
+  return 2 * ((2 * peak - speed) / a + std::max(0.0, at_feed) / peak) + radius * turn / speed;
+}
+
+class CornerBound : public testing::TestWithParam<const char*> {};
+
+// It knows that something brakes there, and no more than what brakes an arc.
+TEST_P(CornerBound, IsBetweenTheStraightWayAndAnArc) {
+  const Machine machine = *find_machine(GetParam());
+  const double straight = least_time(corner_of(1e-6), 0.01, machine);
+  for (const double turn : {0.8, 1.5, 2.2, 2.8}) {
+    SCOPED_TRACE(turn);
+    const double least = least_time(corner_of(turn), 0.01, machine);
+    EXPECT_GT(least, 1.01 * straight);
+    // As far as the control rounds by itself on top of the tolerance.
+    const double far = 0.01 + machine.blend_tolerance + machine.naive_cam_tolerance;
+    EXPECT_LE(least, rounded_time(turn, far, machine));
+  }
+}
+INSTANTIATE_TEST_SUITE_P(Machines, CornerBound, testing::Values("linuxcnc", "mill"));
+
+TEST(CornerBound, IsNoneWhereTheControlMayLeaveTheCornerOrShortBlocksRunOn) {
+  const Machine linuxcnc = *find_machine("linuxcnc");
+  gcode::PathControl path;
+  const double least = least_time(corner_of(1.5), 0.01, linuxcnc, path);
+  path.blend_tolerance = 0;  // G64 without P
+  const double no_limit = least_time(corner_of(1.5), 0.01, linuxcnc, path);
+  EXPECT_LT(no_limit, 0.99 * least);
+  path.blend_tolerance = 1;
+  EXPECT_LT(least_time(corner_of(1.5), 0.01, linuxcnc, path), least);
+  const Machine router = *find_machine("router");
+  EXPECT_LT(least_time(corner_of(1.5), 0.01, router),
+            1.01 * least_time(corner_of(1e-6), 0.01, router));
+}
+
+// Edges that are shorter than the bend may be left out by it.
+TEST(CornerBound, IsNoneOfTeethThatABendPasses) {
+  const Machine machine = *find_machine("mill");
+  std::vector<Point3> teeth;
+  for (int i = 0; i <= 100; ++i) teeth.emplace_back(0.05 * i, i % 2 == 0 ? 0.01 : -0.01, 0);
+  const postproc::Run flat = run_through({{0, 0, 0}, {5, 0, 0}}, 6000);
+  EXPECT_LE(least_time(run_through(teeth, 6000), 0.02, machine),
+            1.001 * least_time(flat, 0.02, machine));
 }
 
 // Chords of length c on a circle of radius r are c^2 / 8 r away from it.
