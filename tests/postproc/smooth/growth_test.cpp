@@ -103,6 +103,15 @@ TEST_F(Growth, OfAProgramByItsCommentAloneIsNotWorthIt) {
   EXPECT_EQ(works_[0].reject_reason, gcode::reason::kNoGain);
 }
 
+// A block less than before, with some bytes more, or bytes for a block: half of each counts.
+TEST_F(Growth, ByTheCommentIsMeasuredInBlocksAndBytes) {
+  for (const Figures& eaten : {figures(10, 99, 970, 0.004), figures(10, 100, 960, 0.004)}) {
+    works_.clear();
+    add({eaten});
+    EXPECT_EQ(settled(), Chosen{-1});
+  }
+}
+
 TEST_F(Growth, OfNoCommentIsNone) {
   add({figures(10, 100, 970, 0.004)});
   EXPECT_EQ(settled(Prefer::kTime, "codesys"), Chosen{0});
@@ -112,7 +121,7 @@ TEST_F(Growth, ByTheCommentIsPaidByBlocksBytesTimeDistanceOrRoughness) {
   Figures smoother = figures(10, 100, 970, 0.004);
   smoother.roughness = 0.04;
   for (const Figures& paid :
-       {figures(10, 99, 970, 0.004), figures(10, 100, 960, 0.004), figures(9.9, 100, 970, 0.004),
+       {figures(10, 98, 970, 0.004), figures(10, 100, 950, 0.004), figures(9.9, 100, 970, 0.004),
         figures(10, 100, 970, 0.002), smoother}) {
     works_.clear();
     add({paid});
