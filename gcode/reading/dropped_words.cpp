@@ -114,6 +114,7 @@ std::size_t drop_in(std::string& line, const DroppableWord& row) {
 
 std::vector<std::string_view> droppable_words() {
   std::vector<std::string_view> names;
+  names.reserve(std::size(kWords));
   for (const DroppableWord& row : kWords) names.push_back(row.name);
   return names;
 }

@@ -232,6 +232,7 @@ std::vector<NewCrossing> new_crossings(std::span<const PathPiece> before,
     }
   }
   std::vector<NewCrossing> sorted;
+  sorted.reserve(all.size());
   for (const auto& [pieces, crossing] : all) sorted.push_back(crossing);
   return sorted;
 }

@@ -19,7 +19,7 @@ struct PathPlace {
   std::size_t piece = 0;
   std::uint32_t billionths = 0;  // of the piece's parameter; below 1e9
 
-  auto operator<=>(const PathPlace&) const = default;
+  auto operator<=>(const PathPlace&) const = default;  // NOLINT(modernize-use-nullptr)
 };
 
 struct SparsePair {
@@ -31,8 +31,8 @@ struct SparsePair {
 // rule would leave the tolerance. The ends of the paths are not among them. Numbers are rounded to
 // as few digits as the proof bears. Nothing where no choice of them proves it.
 //
-// The rule is followed on chords as the checker cuts them (checked_chords), for each of its finenesses
-// until one proves it; where two steps are equal but for rounding, it may take either.
+// The rule is followed on chords as the checker cuts them (checked_chords), for each of its
+// finenesses until one proves it; where two steps are equal but for rounding, it may take either.
 //
 // Requires: `matching` is the one of match_paths for these paths and this tolerance or a greater
 // one, and proved for that.

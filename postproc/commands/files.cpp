@@ -150,7 +150,7 @@ PartReading reading_of(const gcode::SourceText& source, const ReadingCommand& co
 std::optional<gcode::SourceText> read_program(const std::string& name,
                                               const std::vector<std::string>& drop,
                                               std::size_t& dropped) {
-  const auto source = read_program(name);
+  auto source = read_program(name);
   if (!source || drop.empty()) return source;
   return gcode::without_words(*source, drop, dropped);
 }

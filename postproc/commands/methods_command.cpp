@@ -168,7 +168,7 @@ std::vector<Json> printed_in(const nlohmann::json& given, const TableCase& of) {
         throw TableError(
             fmt::format("{}: {}: expected one of {}", what, key, fmt::join(names, ", ")));
       }
-      read[key] = number_in(value, what + ": " + key);
+      read[key] = number_in(value, fmt::format("{}: {}", what, key));
     }
     const std::vector<double> tolerances = row.contains("tolerance")
                                                ? numbers_in(row["tolerance"], what + ": tolerance")

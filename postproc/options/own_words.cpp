@@ -155,9 +155,10 @@ void OwnWordList::add(std::string_view name, std::string_view effects,
   const std::size_t problems_before = problems.size();
   std::string known;
   const auto word = word_name_in(name, known);
-  if (!word)
+  if (!word) {
     problems.push_back(
         fmt::format("'{}' is no word; expected one like {}", name, kNamesOfOwnWords));
+  }
   if (!known.empty()) {
     problems.push_back(known + "; only words that it does not know can be named");
   }

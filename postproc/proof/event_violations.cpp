@@ -41,10 +41,10 @@ bool of_two_languages(const EventAt& old, const EventAt& now) {
 
 }  // namespace
 
-double same_place_at(const EventAt& old, const EventAt& now) {
-  if (!of_two_languages(old, now)) return geometry::kSamePlace;
-  if (now.read.program->language != gcode::Language::kRs274) return kPrintedAnew;
-  const bool inch = now.state_after().units == gcode::Units::kInch;
+double same_place_at(const EventAt& before, const EventAt& after) {
+  if (!of_two_languages(before, after)) return geometry::kSamePlace;
+  if (after.read.program->language != gcode::Language::kRs274) return kPrintedAnew;
+  const bool inch = after.state_after().units == gcode::Units::kInch;
   return inch ? kPrintedInPlainInches : kPrintedInPlainMillimetres;
 }
 

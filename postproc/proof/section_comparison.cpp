@@ -366,6 +366,7 @@ std::vector<Violation> chords_violations(const PartPair& pair, const TargetChord
     to_blame = {chords.is_cut(worst) ? worst : chords.worst};
   }
   std::vector<Violation> violations;
+  violations.reserve(to_blame.size());
   for (const std::size_t piece : to_blame) {
     violations.push_back(
         {ViolationKind::kTarget, "arc-chords", pair.before.line(0), pair.after.line(piece), 0,

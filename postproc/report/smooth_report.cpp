@@ -437,6 +437,7 @@ std::vector<std::string> texts_of_origins(
   std::map<std::string_view, std::vector<std::string_view>> by_origin;
   for (const auto& [option, origin] : origins) by_origin[origin].push_back(option);
   std::vector<std::string> texts;
+  texts.reserve(by_origin.size());
   for (const auto& [origin, options] : by_origin) {
     texts.push_back(fmt::format("{}: {}", fmt::join(options, ", "), origin));
   }

@@ -126,11 +126,11 @@ const CauseTally::Since* CauseTally::since(std::string_view reason) const {
   return reason == reason::kPositionUnknown ? &place_since_ : nullptr;
 }
 
-void CauseTally::begin(KeptCause& cause, Since move) const {
+void CauseTally::begin(KeptCause& cause, const Since& move) const {
   const Since* from = since(cause.reason);
   cause.first_line = move.line;
   cause.line = cause.last_from = from != nullptr ? from->line : 0;
-  cause.text = cause.line > 0 ? from->text : std::move(move.text);
+  cause.text = cause.line > 0 ? from->text : move.text;
   cause.times = 1;
 }
 

@@ -69,7 +69,7 @@ class CauseTally {
 
   KeptCause& cause_of(std::string_view reason);
   [[nodiscard]] const Since* since(std::string_view reason) const;
-  void begin(KeptCause& cause, Since move) const;
+  void begin(KeptCause& cause, const Since& move) const;
   void go_on(KeptCause& cause) const;
 
   KeptCauses kept_;  // in the order in which they were found

@@ -40,8 +40,9 @@ class PrinterCfgReader {
     require("max_accel", limits.acceleration,
             {"axis.x.acceleration", "axis.y.acceleration", "axis.z.acceleration"});
     // A value that is too small is wrong once.
-    machine_.path_feed = limits.velocity > 0 ? limits.velocity : Machine::kNone;
-    machine_.path_acceleration = limits.acceleration > 0 ? limits.acceleration : Machine::kNone;
+    machine_.path_feed = machine_.path_acceleration = Machine::kNone;
+    if (limits.velocity > 0) machine_.path_feed = limits.velocity;
+    if (limits.acceleration > 0) machine_.path_acceleration = limits.acceleration;
     limits.rapid_velocity = limits.velocity;
     limits.jerk = Machine::kNone;
     for (std::size_t i = 0; i < kLinearAxes; ++i) machine_.axes[i] = limits;
