@@ -30,7 +30,7 @@ bool holds_all_along(const PlaneCubic& piece, int halvings, const Ends& ends,
   if (!ends(piece.control)) return false;
   if (bounds(piece.control)) return true;
   if (halvings == 0) return false;
-  const auto [left, right] = halves<PlaneCubic>(piece);
+  const auto [left, right] = geometry::halves(piece);
   return holds_all_along(left, halvings - 1, ends, bounds) &&
          holds_all_along(right, halvings - 1, ends, bounds);
 }
