@@ -233,7 +233,7 @@ class NameApplier {
         state_.other_motion = row.why;
         return;
       case NameAct::kBlends:
-        modal().path.mode = PathMode::kBlending;
+        modal().path = PathMode::kBlending;
         return;
       case NameAct::kInches:
         return set_units_to(Units::kInch);

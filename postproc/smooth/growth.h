@@ -37,8 +37,8 @@ struct PartSums {
 // Runs are chosen one by one, and one that is a percent faster may have more blocks, though it is a
 // thousandth of the program. Where all runs together are worse, those that gain the least for what
 // they grow change to a candidate that does not, or keep their blocks. All keep them where all
-// that is won are fewer blocks and bytes than the comment that the program was smoothed takes,
-// unless a form is asked for by name.
+// that is won is less size, in blocks and bytes by halves, than the comment takes that says that
+// the program was smoothed, unless a form is asked for by name.
 void revert_growth(std::vector<RunState>& works, std::vector<CutRun>& cut_runs,
                    const SmoothOptions& options);
 

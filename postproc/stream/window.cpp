@@ -331,6 +331,11 @@ class Prover {
   void add_violations_of_pieces(ReadProgram before, ReadProgram after,
                                 const std::vector<std::uint32_t>& begins, const Promise& promise,
                                 Verification& verification) const {
+    const auto is_apart = [](const Violation& violation) {
+      return violation.kind == ViolationKind::kDistance ||
+             violation.kind == ViolationKind::kNotProved;
+    };
+    if (std::ranges::none_of(verification.violations, is_apart)) return;
     std::vector<std::uint32_t> cuts;
     for (const RunState& work : runs_.works) {
       const Section& section = runs_.sections[work.section];
@@ -344,9 +349,7 @@ class Prover {
     after.cuts = new_cuts;
     Verification of_pieces = verify(before, after, promise, options_.threads);
     for (Violation& violation : of_pieces.violations) {
-      const bool apart =
-          violation.kind == ViolationKind::kDistance || violation.kind == ViolationKind::kNotProved;
-      if (apart) verification.violations.push_back(std::move(violation));
+      if (is_apart(violation)) verification.violations.push_back(std::move(violation));
     }
   }
 

@@ -125,8 +125,7 @@ class TubeCandidates {
     add_weighted(TubeMethod::kQuick, solver_.original(), kTubeTuning.quick_power);
   }
 
-  void add_few(std::span<const TubeMethod> methods) {
-    std::optional<BsplineCurve> third;
+  void add_few(std::span<const TubeMethod> methods, std::optional<BsplineCurve> third) {
     const auto least_third = [&]() -> const BsplineCurve& {
       if (!third) third = solver_.least(3, {});
       return *third;
@@ -294,10 +293,11 @@ std::vector<TubeCandidate> smooth_in_tube(const BsplineCurve& curve, const TubeO
 }
 
 FewInTube few_in_tube(const BsplineCurve& curve, const TubeOptions& options,
-                      std::span<const TubeMethod> methods) {
+                      std::span<const TubeMethod> methods,
+                      const std::optional<BsplineCurve>& third) {
   check(curve, options);
   TubeCandidates made(curve, options, 0);
-  made.add_few(methods);
+  made.add_few(methods, third);
   return {std::move(made.found), made.visits()};
 }
 

@@ -9,6 +9,7 @@
 #include <array>
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -95,7 +96,7 @@ struct TubeCandidate {
                                                         const TubeOptions& options);
 
 // The candidates that win most for their cost: the least integrals of |C'''|^2, whose curve is
-// within some percent of the fastest of them, and of |C''|^2, the old curve, and after the first
+// nearly as fast as the best of them, and of |C''|^2, the old curve, and after the first
 // one round of curvature and one of estimated time.
 inline constexpr std::array kFewMethods = {TubeMethod::kThirdDerivative, TubeMethod::kBending,
                                            TubeMethod::kOriginal, TubeMethod::kCurvature,
@@ -112,9 +113,12 @@ struct FewInTube {
 // the last two that of the first, too, once: of kTubeTuning.watched samples for a span and of at
 // most kBandTuning.max_steps steps. `options.halvings` is not looked at.
 //
+// `third`: the curve by kThirdDerivative, where it is at hand.
+//
 // Throws as smooth_in_tube does, and for another method.
 [[nodiscard]] FewInTube few_in_tube(const BsplineCurve& curve, const TubeOptions& options,
-                                    std::span<const TubeMethod> methods = kFewMethods);
+                                    std::span<const TubeMethod> methods = kFewMethods,
+                                    const std::optional<BsplineCurve>& third = {});
 
 // Seconds that the machine takes for a curve.
 using CurveTimer = std::function<double(const BsplineCurve&)>;

@@ -222,8 +222,11 @@ class TubeWays {
   [[nodiscard]] std::vector<geometry::TubeCandidate> solved(
       std::size_t section, std::span<const geometry::TubeMethod> methods) {
     options_.held_points = TubeFit::held_points(fit_.sections[section]);
+    static_assert(geometry::kFewMethods.front() == geometry::TubeMethod::kThirdDerivative);
+    std::optional<BsplineCurve> third;
+    if (!few_[section].empty()) third = few_[section].front().curve;
     geometry::FewInTube found =
-        geometry::few_in_tube(fit_.part(fit_.sections[section]), options_, methods);
+        geometry::few_in_tube(fit_.part(fit_.sections[section]), options_, methods, third);
     visits_ += found.visits;
     return std::move(found.candidates);
   }

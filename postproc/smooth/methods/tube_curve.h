@@ -27,7 +27,8 @@ struct TubeTuning {
   double planned = 2500;
   double samples = 10;
   // Times of the fastest other form: where the first of geometry::kFewMethods is so slow, the
-  // others are not tried. It is within 3 % of the best of them (docs/algorithms/methods.md).
+  // others are not tried. It is nearly as fast as the
+  // best of them.
   double behind = 1.1;
 };
 inline constexpr TubeTuning kTube;

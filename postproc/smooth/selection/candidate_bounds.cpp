@@ -97,6 +97,13 @@ using geometry::Vector3;
 
 namespace {
 
+// mm: how far inside of a corner a path may pass that is within `tolerance` of its legs. In the
+// reading `band` the corner itself may be farther from it.
+double inside_of_corner(double tolerance, double half_turn, geometry::ToleranceKind kind) {
+  if (kind != geometry::ToleranceKind::kBand) return tolerance;
+  return tolerance / std::max(std::cos(half_turn), std::sin(geometry::kSharpestCut / 2));
+}
+
 // What a path within `tolerance` of a corner can save by cutting it: a chord across the corner at
 // the height h above it is 2 h tan(turn / 4) shorter than the legs. It joins the middles of the
 // legs at most.
@@ -108,10 +115,8 @@ double saved_at(const Vector3& a, const Vector3& b, double tolerance,
   const double sine = across / (a.norm() * b.norm());
   if (to_middles <= tolerance * sine / 2) return to_middles;
   const double turn = std::atan2(across, a.dot(b));
-  if (kind == geometry::ToleranceKind::kBand) {
-    tolerance /= std::max(std::cos(turn / 2), std::sin(geometry::kSharpestCut / 2));
-  }
-  return std::min(to_middles, 2 * tolerance * std::tan(turn / 4));
+  const double inside = inside_of_corner(tolerance, turn / 2, kind);
+  return std::min(to_middles, 2 * inside * std::tan(turn / 4));
 }
 
 }  // namespace
@@ -171,17 +176,17 @@ std::optional<double> rounded_by_control(const Machine& machine, const gcode::Pa
   }
 }
 
-// mm/s, at which a way passes the corner between two edges that leaves it by `inside` at most
-// within the bend, and the edges by `beside`: the widest circle that does. No limit where the edges
-// are shorter than it reaches.
-double greatest_corner_speed(const Vector3& a, const Vector3& b, double inside, double beside,
-                             const Vector3& accelerations) {
+// mm/s, at which a way passes the corner between two edges that stays within `far` of them: on the
+// widest circle that does. No limit where the edges are shorter than it reaches.
+double greatest_corner_speed(const Vector3& a, const Vector3& b, double far,
+                             geometry::ToleranceKind kind, const Vector3& accelerations) {
   const Vector3 before = a.normalized();
   const Vector3 turn = b.normalized() - before;
   const double sine = turn.norm() / 2;  // of half the turn
   if (sine < geometry::kSameDirection) return kNoLimit;
   const double cosine = std::sqrt(std::max(0.0, 1 - sine * sine));
-  const double radius = (inside * cosine + beside) * (1 + cosine) / (sine * sine);
+  const double inside = inside_of_corner(far, std::atan2(sine, cosine), kind);
+  const double radius = (inside * cosine + far) * (1 + cosine) / (sine * sine);
   if (radius * sine > std::min(a.norm(), b.norm())) return kNoLimit;
   return std::sqrt(limit_along(turn.normalized(), accelerations) * radius);
 }
@@ -224,8 +229,8 @@ double least_time(const Run& run, double tolerance, const Machine& machine,
     const double saved = i > 0 ? saved_at(p[i] - p[i - 1], edge, tolerance, kind) : 0;
     if (!chain.empty() && rounded) {
       double& exit = chain.back().exit_velocity;
-      const double far = tolerance + *rounded;
-      exit = std::min(exit, greatest_corner_speed(p[i] - p[i - 1], edge, far, far, accelerations));
+      exit = std::min(exit, greatest_corner_speed(p[i] - p[i - 1], edge, tolerance + *rounded, kind,
+                                                  accelerations));
     }
     if (!(length - saved > 0)) continue;
     const PathLimits most = limits.along(edge / length);

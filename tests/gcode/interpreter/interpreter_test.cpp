@@ -286,6 +286,7 @@ TEST(Interpreter, KnowsHowFarABlendMayLeaveTheJoints) {
   EXPECT_EQ(after("G64 P0.05\nG64").blend_tolerance, 0);
   EXPECT_EQ(after("G64 P0.05\nG61").blend_tolerance, std::nullopt);
   EXPECT_EQ(after("G64 P0.05\nM98 P1").blend_tolerance, std::nullopt);
+  EXPECT_EQ(after("G64 P0.05\n/G64 P0.1"), PathControl(PathMode::kBlending));
 }
 
 }  // namespace

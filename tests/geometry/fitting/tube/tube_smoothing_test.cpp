@@ -86,6 +86,16 @@ TEST(FewInTube, OfOneMethodIsTheSameAsAmongAll) {
                 all.candidates[i].curve.control_points());
       EXPECT_LE(one.visits, 2 * 200 * (6 * spans + 1));
     }
+    const std::span rest = std::span(kFewMethods).subspan(1);
+    const FewInTube others =
+        few_in_tube(curve, tube(radius_for(seed)), rest, all.candidates.front().curve);
+    const FewInTube first =
+        few_in_tube(curve, tube(radius_for(seed)), std::span(kFewMethods).first(1));
+    EXPECT_EQ(first.visits + others.visits, all.visits) << "nothing is solved twice";
+    for (std::size_t i = 0; i < rest.size(); ++i) {
+      EXPECT_EQ(others.candidates[i].curve.control_points(),
+                all.candidates[i + 1].curve.control_points());
+    }
   }
   constexpr TubeMethod kOther = TubeMethod::kEven;
   EXPECT_THROW((void)few_in_tube(random_curve(1), tube(.1), std::span(&kOther, 1)),

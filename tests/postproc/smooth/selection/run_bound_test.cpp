@@ -123,6 +123,9 @@ TEST_P(CornerBound, IsBetweenTheStraightWayAndAnArc) {
     // As far as the control rounds by itself on top of the tolerance.
     const double far = 0.01 + machine.blend_tolerance + machine.naive_cam_tolerance;
     EXPECT_LE(least, rounded_time(turn, far, machine));
+    const double in_band =
+        least_time(corner_of(turn), 0.01, machine, {}, geometry::ToleranceKind::kBand);
+    EXPECT_LE(in_band, rounded_time(turn, far / std::cos(turn / 2), machine));
   }
 }
 INSTANTIATE_TEST_SUITE_P(Machines, CornerBound, testing::Values("linuxcnc", "mill"));
