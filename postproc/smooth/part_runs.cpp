@@ -17,6 +17,7 @@
 #include "postproc/runs/run_grouping.h"
 #include "postproc/runs/run_path.h"
 #include "postproc/smooth/growth.h"
+#include "postproc/smooth/kept_neighbours.h"
 #include "postproc/smooth/repeated_runs.h"
 #include "postproc/smooth/run_smoother.h"
 #include "postproc/smooth/selection/candidate_bounds.h"
@@ -82,7 +83,12 @@ class BoundaryTiming {
       const std::uint32_t end = section.last_block + 1;
       const bool begins = is_cut(section.first_block);
       const bool ends = is_cut(end);
-      if (!begins && !ends) continue;
+      if (!begins && !ends) {
+        if (options_.method == Method::kNone) continue;
+        put_between(before(section.first_block), after(end), std::get<Run>(section.content),
+                    *options_.machine, work.context);
+        continue;
+      }
       Times shared;
       if (begins) {
         work.context.lead = before(section.first_block);
@@ -128,7 +134,7 @@ class BoundaryTiming {
   }
 
   [[nodiscard]] std::vector<TimedPiece> after(std::uint32_t block) const {
-    if (block == part_.program.blocks.size()) return part_.window->moves_behind;
+    if (part_.window && block == part_.program.blocks.size()) return part_.window->moves_behind;
     return moves_from(part_.program, part_.meaning, block, window_end(block));
   }
 

@@ -57,16 +57,41 @@ bool is_same_bend(const RunBend& a, const RunBend& b, const Vector3& offset) {
          is_same_piece(a.piece, b.piece, offset);
 }
 
-bool are_same_moves(std::span<const TimedPiece> a, std::span<const TimedPiece> b,
+bool is_same_kind(const TimedPiece& a, const TimedPiece& b) {
+  return a.feed == b.feed && a.rapid == b.rapid && a.says_speed == b.says_speed &&
+         a.piece.index() == b.piece.index();
+}
+
+bool is_same_move(const TimedPiece& a, const TimedPiece& b, const Vector3& offset) {
+  return is_same_kind(a, b) &&
+         is_same(geometry::start_point(a.piece) + offset, geometry::start_point(b.piece)) &&
+         is_same(geometry::point_at(a.piece, 0.5) + offset, geometry::point_at(b.piece, 0.5)) &&
+         is_same(geometry::end_point(a.piece) + offset, geometry::end_point(b.piece));
+}
+
+// The same where they meet the run: a plunge to another depth begins elsewhere.
+bool is_same_from_afar(const TimedPiece& a, const TimedPiece& b, double at, const Vector3& offset) {
+  return is_same_kind(a, b) &&
+         is_same(geometry::point_at(a.piece, at) + offset, geometry::point_at(b.piece, at)) &&
+         is_same(geometry::direction_at(a.piece, at), geometry::direction_at(b.piece, at));
+}
+
+bool are_same_leads(std::span<const TimedPiece> a, std::span<const TimedPiece> b,
                     const Vector3& offset) {
-  return std::ranges::equal(a, b, [&](const TimedPiece& one, const TimedPiece& other) {
-    return one.feed == other.feed && one.rapid == other.rapid &&
-           one.says_speed == other.says_speed && one.piece.index() == other.piece.index() &&
-           is_same(geometry::start_point(one.piece) + offset, geometry::start_point(other.piece)) &&
-           is_same(geometry::point_at(one.piece, 0.5) + offset,
-                   geometry::point_at(other.piece, 0.5)) &&
-           is_same(geometry::end_point(one.piece) + offset, geometry::end_point(other.piece));
-  });
+  if (a.size() != b.size()) return false;
+  for (std::size_t i = 1; i < a.size(); ++i) {
+    if (!is_same_move(a[i], b[i], offset)) return false;
+  }
+  return a.empty() || is_same_from_afar(a.front(), b.front(), 1, offset);
+}
+
+bool are_same_tails(std::span<const TimedPiece> a, std::span<const TimedPiece> b,
+                    const Vector3& offset) {
+  if (a.size() != b.size()) return false;
+  for (std::size_t i = 0; i + 1 < a.size(); ++i) {
+    if (!is_same_move(a[i], b[i], offset)) return false;
+  }
+  return a.empty() || is_same_from_afar(a.back(), b.back(), 0, offset);
 }
 
 // Which motion, feed and speed hold is said by the text anew where it has to be.
@@ -78,9 +103,7 @@ bool is_same_state(gcode::ModalState a, const gcode::ModalState& b) {
   return a == b;
 }
 
-bool may_repeat(RunInContext each) {
-  return each.run->comments.empty() && !each.context->of_neighbours;
-}
+bool may_repeat(RunInContext each) { return each.run->comments.empty(); }
 
 // The same for runs of one shape and tolerance: that of the vertices, seen from the first, in steps
 // far above what numbers differ by and off the places where printed numbers lie.
@@ -135,8 +158,8 @@ std::optional<Vector3> offset_of_repeat(RunInContext first, RunInContext run,
                          [](const FeedFrom& p, const FeedFrom& q) {
                            return p.vertex == q.vertex && p.feed == q.feed;
                          }) &&
-      a.speed_words == b.speed_words && are_same_moves(before.lead, now.lead, offset) &&
-      are_same_moves(before.tail, now.tail, offset);
+      a.speed_words == b.speed_words && are_same_leads(before.lead, now.lead, offset) &&
+      are_same_tails(before.tail, now.tail, offset);
   return same ? std::optional(offset) : std::nullopt;
 }
 

@@ -234,7 +234,7 @@ class RunSmoother {
     return time;
   }
 
-  // s, from rest to rest; of a part of a run the times are those between its neighbours.
+  // s, from rest to rest; of a piece the times are what it adds to its neighbours'.
   [[nodiscard]] double best_time() const {
     return context().is_piece() ? result_.facts.scale.alone : fastest();
   }

@@ -32,12 +32,15 @@ struct RunContext {
   std::size_t blocks = 0;  // of the run, as they were
   std::size_t bytes = 0;
   LineNumberRange numbers = {};  // for the blocks that replace them
-  // What is cut right before and after a piece of a longer run, which is not run from rest to rest.
+  // What is cut right before and after it: the machine does not come to rest between them.
   std::vector<TimedPiece> lead = {};
   std::vector<TimedPiece> tail = {};
-  // Of a run for itself that was cut from a longer one: what of the time with lead and tail belongs
-  // to its neighbours. Nothing of a piece: what it adds to the times of both alone is asked.
+  // Of a run for itself: what of the time with lead and tail is not the run's. Between moves that
+  // stay as they are that is all but its time from rest to rest; of a run that was cut from a
+  // longer one it is its neighbours' share. Nothing of a piece: what it adds to the times of both
+  // alone is asked.
   std::optional<Times> of_neighbours = {};
+  double may_win = 0;  // s: by going on from lead or into tail faster than the run does
 
   [[nodiscard]] bool is_piece() const { return !of_neighbours && (!lead.empty() || !tail.empty()); }
 };

@@ -44,7 +44,7 @@ Figures CandidateBounds::least(Form form, double blocks, double distance) const 
   Figures least;
   // A control that rounds corners may take less than the length of the path at its feeds.
   least.times = before;
-  least.times.programmed += std::min(0.0, least_time_ - scale.alone);
+  least.times.programmed += std::min(0.0, least_time_ - scale.alone) - task_.context.may_win;
   // Where noise is smoothed over many vertices the path is shorter than the bound knows: what one
   // form takes another may take as well.
   for (const Candidate& c : so_far_.candidates) {

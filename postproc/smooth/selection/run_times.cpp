@@ -83,8 +83,7 @@ Times RunTimes::of_candidate(const std::vector<TimedPiece>& moves, const Times& 
   return times;
 }
 
-// What the neighbours take without this piece, each from rest to rest. Of neighbours in a long run
-// that was cut: their part of the time.
+// Of the time of the whole chain; of a piece what they take without it, each from rest to rest.
 Times RunTimes::of_neighbours() const {
   if (context_.of_neighbours) return *context_.of_neighbours;
   Times sum;

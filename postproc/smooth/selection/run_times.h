@@ -14,8 +14,7 @@ namespace batten::postproc {
 [[nodiscard]] Times times_of(std::span<const TimedPiece> chain, const Machine& machine,
                              const gcode::PathControl& path, WorthAPlan worth = kAmongForms);
 
-// Of a run between its neighbours: what it adds to the time that they take alone. From rest to rest
-// where it has none.
+// Of a run between its neighbours (RunContext). From rest to rest where it has none.
 class RunTimes {
  public:
   // Both must live as long. `worth`: as TimedChain::time has it.

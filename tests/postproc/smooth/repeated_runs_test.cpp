@@ -22,14 +22,17 @@ struct Pass {
   double x = 0;
   double z = -1;
   std::string feed = "2000";
-  std::string before = {}; // lines before its first cut
-  std::string comment = {};// of a line in it
-  double last_height = 0;  // of its last vertex, off the wave
+  std::string before = {};         // lines before its first cut
+  std::string comment = {};        // of a line in it
+  double last_height = 0;          // of its last vertex, off the wave
+  std::string rest = "G4 P0.1\n";  // between its plunge and its first cut
+  std::string plunge_feed = "300";
 };
 
 std::string lines_of_pass(const Pass& pass) {
-  std::string text = pass.before + fmt::format("G0 X{:.4f} Y0\nG1 Z{:.3f} F300\n", pass.x, pass.z);
-  text += fmt::format("G4 P0.1\n");
+  std::string text =
+      pass.before +
+      fmt::format("G0 X{:.4f} Y0\nG1 Z{:.3f} F{}\n", pass.x, pass.z, pass.plunge_feed) + pass.rest;
   for (int i = 1; i <= 80; ++i) {
     const double y = 3 * std::sin(0.12 * i) + (i == 80 ? pass.last_height : 0);
     text += fmt::format("{}X{:.4f} Y{:.4f}{}{}\n", i == 1 ? "G1 " : "", pass.x + 0.4 * i, y,
@@ -90,11 +93,19 @@ TEST(RepeatedRuns, AreOnesThatDifferInNothingElse) {
   EXPECT_EQ(firsts_in({{}, {.x = 50.0002}}, "grbl"), (Firsts{0, 1})) << "it has steps of 0.001 mm";
 }
 
+// A plunge from farther above ends alike; one that ends faster takes another time with the run.
+TEST(RepeatedRuns, MayFollowFromPlungesOfOtherDepths) {
+  EXPECT_EQ(firsts_in({{.rest = ""}, {.z = -2, .rest = ""}, {.x = 50, .z = -3.5, .rest = ""}}),
+            (Firsts{0, 0, 0}));
+  EXPECT_EQ(firsts_in({{.rest = ""}, {.rest = "", .plunge_feed = "600"}, {}}), (Firsts{0, 1, 2}));
+}
+
 // The words of a pass but for its depth.
 std::vector<std::string> texts_in(const std::vector<Pass>& passes, const SmoothOptions& options) {
   const ProgramPart part = part_of(passes);
   PartRuns runs = find_runs(part, options);
-  EXPECT_TRUE(smooth_runs(part, options, [](double) { return true; }, runs));
+  EXPECT_TRUE(smooth_runs(
+      part, options, [](double) { return true; }, runs));
   std::vector<std::string> texts;
   for (const RunState& work : runs.works) {
     const Candidate* chosen = work.chosen();

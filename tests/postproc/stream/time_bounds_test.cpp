@@ -28,7 +28,7 @@ TEST(TimeBounds, AreBelowWhatIsWrittenAndFallWithTheTolerance) {
           options.tolerance_mm = tolerance;
           const SmoothResult written = smoothed(text, options);
           const BoundedTime near = bounds_of(text, *options.machine, tolerance).seconds;
-          EXPECT_NEAR(near.time, written.runs_before_s, 1e-9 * near.time);
+          EXPECT_NEAR(near.time, written.runs_before_s, 1e-5 * near.time);
           EXPECT_LE(near.least(), written.runs_after_s);
           EXPECT_LE(near.least(), before);
           before = near.least();
