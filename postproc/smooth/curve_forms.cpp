@@ -258,12 +258,13 @@ class CurveForms {
     double most = known ? kFormTuning.far * share_ : far();
     if (one_sided_) most = kFormTuning.one_sided * far();
     const double highest = kPlans.balanced * most;
+    const bool accurate = task_.options.prefer == Prefer::kAccuracy;
+    const double nearest = accurate ? kFormTuning.accurate_blocks : kFormTuning.near_blocks;
     for (std::size_t i = 0; i < std::size(kFormTuning.near_chords); ++i) {
       const double height = std::max(kFormTuning.near_chords[i] * distance_before(),
                                      facts().scale.printed / kFormTuning.of_height);
       if (height > kFormTuning.another * highest) continue;
-      const bool accurate = task_.options.prefer == Prefer::kAccuracy;
-      offer_chords(height, accurate && i == 0 ? kFormTuning.accurate_blocks : 1, highest);
+      offer_chords(height, i == 0 ? nearest : 1, highest);
     }
     offer_chords(highest, 0, highest);
     if (linearize_of(task_.options) == Linearize::kMinLink) make_named_lines();

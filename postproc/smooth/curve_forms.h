@@ -19,9 +19,12 @@ namespace batten::postproc {
 struct FormTuning {
   double near_arcs[3] = {0.2, 0.5, 1.6};     // greatest distance of arcs and curves
   double near_chords[3] = {0.6, 1.35, 3.0};  // heights
-  double accurate_blocks = 1.5;  // in parts of those before: of the nearest, for accuracy
-  double far = 1.5;              // of the share
-  double one_sided = 0.25;       // of that, where the run must not be cut on one side
+  // Blocks of the nearest chords at most, in parts of those before: a little less than what is
+  // clearly smaller (kCost), since balanced ones may be one more; for accuracy there may be more.
+  double near_blocks = 0.89;
+  double accurate_blocks = 1.5;
+  double far = 1.5;                           // of the share
+  double one_sided = 0.25;                    // of that, where the run must not be cut on one side
   double named_chords[3] = {1.5, 0.6, 0.25};  // of the share, for lines laid by a named method
   double links = 0.5;  // of the chords that are as high, for such lines at the least
   // Of lines that are counted quickly, for a bound of their blocks: no fewer than 0.93 of them.

@@ -33,7 +33,7 @@ struct CostTuning {
   double no_kinks = 1e-3;  // rad/sqrt(mm): less is as smooth
   double loss = 3;  // a little more size or distance counts so many times what as much less does
   // Where any figure is more than it was, the roughness by so much, losses cost this at least.
-  double worse = 0.01;
+  double worse = 0.02;
   double rougher = 1.05;
   // Never slower. The path that was meant is longer than chords inside its bends, by about this.
   double longer = 1e-3;

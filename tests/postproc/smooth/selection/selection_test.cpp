@@ -146,13 +146,13 @@ TEST_F(Choose, CostsNoLessWhereAnyFigureIsMore) {
 }
 
 // What makes any figure worse costs a hundredth of the time at least, however little it is.
-TEST_F(Choose, TakesAHundredthOfTheTimeForWhatMakesAnyFigureWorse) {
-  EXPECT_EQ(choose({candidate(9.7, 100, 0.004), candidate(9.65, 101, 0.004)}).order, (Order{0, 1}));
-  EXPECT_EQ(choose({candidate(9.7, 100, 0.004), candidate(9.58, 101, 0.004)}).order, (Order{1, 0}));
-  EXPECT_EQ(choose({candidate(9.7, 100, 0.004), candidate(9.65, 90, 0.0041)}).order, (Order{0, 1}));
+TEST_F(Choose, TakesAFiftiethOfTheTimeForWhatMakesAnyFigureWorse) {
+  EXPECT_EQ(choose({candidate(9.7, 100, 0.004), candidate(9.55, 101, 0.004)}).order, (Order{0, 1}));
+  EXPECT_EQ(choose({candidate(9.7, 100, 0.004), candidate(9.48, 101, 0.004)}).order, (Order{1, 0}));
+  EXPECT_EQ(choose({candidate(9.7, 100, 0.004), candidate(9.55, 90, 0.0041)}).order, (Order{0, 1}));
   run_.facts.scale.original.roughness = 0.1;
   Candidate same = candidate(9.7, 100, 0.004);
-  Candidate rougher = candidate(9.65, 90, 0.003);
+  Candidate rougher = candidate(9.55, 90, 0.003);
   same.figures.roughness = 0.1;
   rougher.figures.roughness = 0.104;
   EXPECT_EQ(choose({same, rougher}).order, (Order{1, 0}));
