@@ -101,6 +101,7 @@ Json json_of(const RunReport& run) {
           {"deviation_mm", run.deviation_mm},
           {"proved", run.proved},
           {"noise_mm", run.noise_mm},
+          {"coarse_part", run.coarse_part},
           {"max_curvature_before", run.max_curvature_before},
           {"max_curvature_after", run.max_curvature_after},
           {"bytes_in", run.bytes_in},

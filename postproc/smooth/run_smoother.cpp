@@ -291,6 +291,7 @@ RunFacts facts_of(const Run& run, const RunContext& context, const SmoothOptions
   RunFacts facts;
   for (const TimedPiece& motion : motions) facts.length += geometry::length_of(motion.piece);
   facts.max_curvature = greatest_curvature(run.points);
+  facts.coarse = coarse_part(run, tolerance_of(run, options.tolerance_mm));
   facts.form = form_of(run);
   CostScale& scale = facts.scale;
   scale.original.blocks = static_cast<double>(context.blocks);

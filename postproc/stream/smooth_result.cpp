@@ -90,6 +90,9 @@ class Reporter {
     before_it.methods = joined_times({before_it.methods, before_it.time_before_s},
                                      {std::move(r.methods), r.time_before_s});
     before_it.last_line = r.last_line;
+    const auto edges = static_cast<double>(before_it.points + r.points - 2);
+    before_it.coarse_part +=
+        (r.coarse_part - before_it.coarse_part) * static_cast<double>(r.points - 1) / edges;
     before_it.points += r.points - 1;
     before_it.blocks_in += r.blocks_in;
     before_it.blocks_out += r.blocks_out;
@@ -122,6 +125,7 @@ class Reporter {
     r.path_before = {facts.length, before.distance, before.roughness};
     r.path_after = {facts.length, after.distance, after.roughness};
     r.noise_mm = facts.noise;
+    r.coarse_part = facts.coarse;
     r.max_curvature_before = facts.max_curvature;
     r.max_curvature_after = chosen != nullptr ? chosen->max_curvature : facts.max_curvature;
     r.methods = method_times(work.smoothed);

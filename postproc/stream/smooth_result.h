@@ -61,6 +61,7 @@ struct RunReport {
   bool closed = false;       // it ends where it begins; of a cut run its first part
   bool rounds_seam = false;  // what stands there now rounds the corner in which it does
   double noise_mm = 0;
+  double coarse_part = 0;           // of its vertices, whose chords are coarser than the tolerance
   double max_curvature_before = 0;  // 1/mm, circle through three neighbouring vertices
   double max_curvature_after = 0;
   double time_before_s = 0;

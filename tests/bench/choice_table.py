@@ -11,9 +11,10 @@ another one in its own figure, and where a result is worse than it may be (docs/
   larger   in blocks or bytes without being a percent faster or half as far off
   t, n, s  time is slower, accuracy farther, size larger than another preference
 
-At the end the sums of each target, and how many of the blocks in runs are in runs where a figure is
-clearly better (time -1 %, blocks -10 %, distance or roughness -50 %) and none is worse; what remains by
-reason. `--half`: programs whose names hash to an even or an odd number, so that one half stays apart.
+At the end the sums of each target, and how many of the blocks in runs of chords that are finer than the
+tolerance (at all but a tenth of the vertices) are in runs where a figure is clearly better (time -1 %,
+blocks -10 %, distance or roughness -50 %) and none is worse, the time by more than a control's period
+and a thousandth; what remains by reason. `--half`: programs whose names hash to an even or an odd number, so that one half stays apart.
 """
 
 import argparse
@@ -23,6 +24,7 @@ import hashlib
 import json
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -32,6 +34,7 @@ sys.path.insert(0, str(HERE.parent / "corpus"))
 from programs import bytes_of, programs_in
 
 PREFERENCES = ["time", "accuracy", "size"]
+COARSE = 0.1  # of its vertices, of a run that is not of fine chords any more
 SAME = 1.002  # times and sizes below this ratio are the same
 NEAR = 0.03   # of the tolerance: distances below it are the same
 
@@ -85,18 +88,31 @@ def figures(report):
     return before, after
 
 
-def clearly_better(run, near):
-    """Whether a figure of a rewritten run is clearly better and none is worse."""
+def period_of(batten, machine):
+    """Seconds that nobody measures on a machine: the longer one of the two periods of its control."""
+    shown = subprocess.run([batten, "machines", "--show", machine], check=True, capture_output=True, text=True).stdout
+    return max(float(period) for period in re.findall(r"^(?:block|servo)-period = ([0-9.]+)", shown, re.MULTILINE))
+
+
+def is_fine(run):
+    return run["path_before"]["length_mm"] > 0 and run["coarse_part"] < COARSE
+
+
+def what_is_worse(run, near, period):
+    """The figures of a rewritten run that are worse, or what else keeps it from being clearly better."""
     before, after = run["path_before"], run["path_after"]
     time = run["time_after_s"] / run["time_before_s"] if run["time_before_s"] > 0 else 1
     blocks = run["blocks_out"] / run["blocks_in"]
     distance = max(after["distance_mm"], near) / max(before["distance_mm"], near)
     roughness = max(after["roughness"], 1e-3) / max(before["roughness"], 1e-3)
-    worse = time > 1.001 or blocks > 1 or distance > 1 or roughness > 1.05
-    return not worse and (time <= 0.99 or blocks <= 0.9 or distance <= 0.5 or roughness <= 0.5)
+    longer = run["time_after_s"] - run["time_before_s"] > max(period, 0.001 * run["time_before_s"])
+    worse = [name for name, is_worse in [("slower", longer), ("more blocks", blocks > 1),
+                                         ("farther", distance > 1), ("rougher", roughness > 1.05)] if is_worse]
+    better = time <= 0.99 or blocks <= 0.9 or distance <= 0.5 or roughness <= 0.5
+    return worse or ([] if better else ["better in nothing"])
 
 
-def marks_of(prefer, of, near, runs, period=0.001):
+def marks_of(prefer, of, near, runs, period):
     before, after = of[prefer]
     marks = []
     if after["time"] > before["time"] + max(period * runs, 5e-4 * before["time"]):
@@ -130,6 +146,7 @@ def main():
         squares = collections.defaultdict(lambda: [0.0, 0.0, 0.0])
         shares = collections.Counter()
         kept = {prefer: collections.Counter() for prefer in PREFERENCES}
+        periods = {}
         for file in files:
             of = {}
             for prefer in PREFERENCES:
@@ -141,7 +158,10 @@ def main():
                 continue
             for prefer, (before, after) in of.items():
                 report = reports[file, target, prefer]
-                marks = marks_of(prefer, of, near, len(report["runs"]))
+                if report["machine"]["name"] not in periods:
+                    periods[report["machine"]["name"]] = period_of(options.batten, report["machine"]["name"])
+                period = periods[report["machine"]["name"]]
+                marks = marks_of(prefer, of, near, len(report["runs"]), period)
                 print(f"{file.name[:44]:44} {target:8} {prefer:8}",
                       *(percent(after[key], before[key]) for key in before), *marks)
                 for key in before:
@@ -152,19 +172,21 @@ def main():
                     squares[prefer][i] += each["distance"] ** 2 * length
                 squares[prefer][2] += length
                 for run in report["runs"]:
-                    if run["path_before"]["length_mm"] == 0:
+                    if not is_fine(run):
                         continue
                     shares[prefer, "all"] += run["blocks_in"]
-                    if run["status"] == "rewritten" and clearly_better(run, near):
-                        shares[prefer, "better"] += run["blocks_in"]
+                    rewritten = run["status"] == "rewritten"
+                    against = what_is_worse(run, near, period) if rewritten else ["kept, " + run["reason"]]
+                    if against:
+                        kept[prefer][" and ".join(against)] += run["blocks_in"]
                     else:
-                        kept[prefer][run["reason"] or "rewritten, one figure worse"] += run["blocks_in"]
+                        shares[prefer, "better"] += run["blocks_in"]
         for prefer in PREFERENCES:
             print(f"{'all':44} {target:8} {prefer:8}",
                   *(percent(sums[prefer, key][1], sums[prefer, key][0]) for key in ["time", "blocks", "bytes"]),
                   percent(squares[prefer][1] ** 0.5, squares[prefer][0] ** 0.5),
                   f" clearly better: {100 * shares[prefer, 'better'] / max(1, shares[prefer, 'all']):.0f} % of "
-                  f"{shares[prefer, 'all']} blocks in runs;",
+                  f"{shares[prefer, 'all']} blocks of fine chords;",
                   ", ".join(f"{reason} {count}" for reason, count in kept[prefer].most_common(6)))
 
 

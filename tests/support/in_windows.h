@@ -75,10 +75,10 @@ inline std::vector<std::string> words_of(const gcode::Diagnostics& diagnostics) 
 // Every field, the numbers to their last bit.
 inline std::string words_of(const RunReport& run) {
   std::string text = fmt::format(
-      "{}-{} {} {:a} {} {} {} {} {}->{} {:a} {} {:a} {:a} {:a} {:a} {:a}", run.first_line,
+      "{}-{} {} {:a} {} {} {} {} {}->{} {:a} {} {:a} {:a} {:a} {:a} {:a} {:a}", run.first_line,
       run.last_line, run.points, run.tolerance_mm, static_cast<int>(run.status), run.reason,
       run.method, static_cast<int>(run.form), run.blocks_in, run.blocks_out, run.deviation_mm,
-      run.proved, run.noise_mm, run.max_curvature_before, run.max_curvature_after,
+      run.proved, run.noise_mm, run.coarse_part, run.max_curvature_before, run.max_curvature_after,
       run.time_before_s, run.time_after_s);
   for (const MethodTime& each : run.methods) {
     text += fmt::format(" {} {:a}", each.method, each.time_s);

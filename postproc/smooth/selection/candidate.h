@@ -64,6 +64,7 @@ struct RunFacts {             // whether it is rewritten or not
   double length = 0;          // mm
   double max_curvature = 0;   // 1/mm, circle through three neighbouring vertices
   double noise = 0;           // mm, rms distance of the vertices from the fair curve
+  double coarse = 0;          // part of its vertices (coarse_part)
   double fair_curvature = 0;  // 1/mm, greatest of the fair curve
 };
 
