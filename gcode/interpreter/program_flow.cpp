@@ -386,7 +386,11 @@ class FlowFinder {
     const bool is_body = segment_is_subprogram_ && !is_main_program(end);
     const bool is_whole = segment_begin_ == 0 && end == program_.blocks.size();
     for (std::size_t i = segment_begin_; is_body && i < end; ++i) {
-      (is_whole ? flow_[i].in_called : flow_[i].in_body) = true;
+      if (is_whole) {
+        flow_[i].in_called = true;
+      } else {
+        flow_[i].in_body = true;
+      }
     }
     // M98 P1 H5 begins at N5.
     any_label_ |= is_body && is_whole && returns_ == Returns::kToAnyLabel;
