@@ -63,7 +63,7 @@ class CandidateBounds {
   [[nodiscard]] double least_bytes(Form form) const;
   [[nodiscard]] Figures least(Form form, double blocks, double distance) const;
 
-  const RunTask& task_;
+  RunTask task_;
   const SmoothedRun& so_far_;
   double least_time_;
 };

@@ -43,8 +43,7 @@ TEST(CandidateBounds, NoFormIsFasterThanTheLeastTime) {
     for (const std::string_view target : {"linuxcnc", "grbl", "grblhal", "klipper", "fanuc"}) {
       const SmoothOptions options = options_for(target);
       const SmoothedRun all = run.smooth(options, CandidateScope::kAll);
-      const RunTask task{run.run(), context, options};
-      const CandidateBounds bounds(task, all);
+      const CandidateBounds bounds({run.run(), context, options}, all);
       const CostScale& scale = all.facts.scale;
       for (const Candidate& form : all.candidates) {
         const double alone =
@@ -73,8 +72,7 @@ TEST(CandidateBounds, KnowTheBytesOfABlockByThoseOfItsForm) {
   known.figures.blocks = 0.5 * scale.original.blocks;
   known.figures.bytes = 0.5 * scale.original.bytes;
   so_far.candidates = {known};
-  const RunTask task{run.run(), context, options};
-  const CandidateBounds bounds(task, so_far);
+  const CandidateBounds bounds({run.run(), context, options}, so_far);
   const auto is_beaten = [&](Form form, double blocks) {
     return bounds.is_beaten(form, blocks * scale.original.blocks / kBounds.fewer,
                             scale.original.distance);
