@@ -19,7 +19,7 @@ using Moves = std::vector<TimedPiece>;
 // any of the models, which brake with half of the acceleration where they blend, and has its full
 // room for a bend.
 double way_to_speed(double feed, const Machine& machine) {
-  const double speed = feed / kMinute;
+  const double speed = std::min(feed / kMinute, machine.max_velocity());
   const double acceleration = machine.max_acceleration();
   return 4 * speed * (speed / acceleration + acceleration / machine.max_jerk());
 }
@@ -44,44 +44,13 @@ Moves joined(Moves moves, const Moves& rest) {
   return moves;
 }
 
-// An end of the run and the moves that stay beside it.
-class Joint {
- public:
-  Joint(const Moves& kept, const Moves& of_run, const Machine& machine,
-        const gcode::PathControl& path)
-      : kept_(kept), of_run_(of_run), machine_(machine), path_(path) {}
-
-  // What the moves add to the time of the run alone. `chain`: both.
-  [[nodiscard]] Times beside(const Moves& chain) const {
-    return time_of(chain).add(time_of(of_run_), -1);
-  }
-
-  // s: what a form could win at the joint, of which the run wins `beside` already: no more than if
-  // the moves went straight on into it, each on so much of the `way` (mm).
-  [[nodiscard]] double may_win(const Times& beside, const TimedPiece& last, double feed,
-                               double way) const {
-    const geometry::Vector3 step = way * geometry::direction_at(last.piece, 1);
-    const geometry::Point3 from = geometry::Point3::Zero();
-    const Moves straight = {{geometry::Line{from, from + step}, last.feed},
-                            {geometry::Line{from + step, from + 2 * step}, feed}};
-    const double rests = seconds({straight.front()}) + seconds({straight.back()});
-    const double wins = seconds(kept_) - beside.programmed;
-    return std::max(0.0, rests - seconds(straight) - wins);
-  }
-
- private:
-  [[nodiscard]] Times time_of(const Moves& chain) const {
-    return times_of(chain, machine_, path_, kNoPlan);
-  }
-  [[nodiscard]] double seconds(const Moves& chain) const {
-    return TimedChain(chain, machine_).time(path_, ChainEnd::kStop, kNoPlan);
-  }
-
-  const Moves& kept_;
-  const Moves& of_run_;
-  const Machine& machine_;
-  const gcode::PathControl& path_;
-};
+// A move, and one of another feed (mm/min) in its direction, each on so much of the way (mm).
+Moves straight_on(const TimedPiece& move, double feed, double way) {
+  const geometry::Vector3 step = way * geometry::direction_at(move.piece, 1);
+  const geometry::Point3 from = geometry::Point3::Zero();
+  return {{geometry::Line{from, from + step}, move.feed},
+          {geometry::Line{from + step, from + 2 * step}, feed}};
+}
 
 }  // namespace
 
@@ -96,12 +65,21 @@ void put_between(Moves lead, Moves tail, const Run& run, const Machine& machine,
   context.lead = last_of(std::move(lead), way);
   context.tail = first_of(std::move(tail), way);
   context.of_neighbours.emplace();
+  const auto time_of = [&](const Moves& chain) {
+    return times_of(chain, machine, context.after.path, kNoPlan);
+  };
+  const auto saved = [&](const Moves& one, const Moves& other, const Times& together) {
+    return time_of(one).programmed + time_of(other).programmed - together.programmed;
+  };
+  // `near`: of the `kept` moves, next to the run, whose feed there is `feed_there`.
   const auto add = [&](const Moves& kept, const Moves& of_run, const Moves& chain,
-                       const TimedPiece& near, double feed_of_run) {
-    const Joint joint(kept, of_run, machine, context.after.path);
-    const Times beside = joint.beside(chain);
-    *context.of_neighbours += beside;
-    context.may_win += joint.may_win(beside, near, feed_of_run, way);
+                       const TimedPiece& near, double feed_there) {
+    const Times together = time_of(chain);
+    context.of_neighbours->add(together, 1).add(time_of(of_run), -1);
+    // No form saves more there than if the moves went straight on.
+    const Moves straight = straight_on(near, feed_there, way);
+    const double most = saved({straight.front()}, {straight.back()}, time_of(straight));
+    context.may_win += std::max(0.0, most - saved(kept, of_run, together));
   };
   if (!context.lead.empty()) {
     const Moves begin = first_of(moves, way);

@@ -62,6 +62,13 @@ bool is_same_kind(const TimedPiece& a, const TimedPiece& b) {
          a.piece.index() == b.piece.index();
 }
 
+// Seen from one of their ends: 0 or 1.
+bool is_same_from(double end, const TimedPiece& a, const TimedPiece& b, const Vector3& offset) {
+  return is_same_kind(a, b) &&
+         is_same(geometry::point_at(a.piece, end) + offset, geometry::point_at(b.piece, end)) &&
+         is_same(geometry::direction_at(a.piece, end), geometry::direction_at(b.piece, end));
+}
+
 bool is_same_move(const TimedPiece& a, const TimedPiece& b, const Vector3& offset) {
   return is_same_kind(a, b) &&
          is_same(geometry::start_point(a.piece) + offset, geometry::start_point(b.piece)) &&
@@ -69,29 +76,22 @@ bool is_same_move(const TimedPiece& a, const TimedPiece& b, const Vector3& offse
          is_same(geometry::end_point(a.piece) + offset, geometry::end_point(b.piece));
 }
 
-// The same where they meet the run: a plunge to another depth begins elsewhere.
-bool is_same_from_afar(const TimedPiece& a, const TimedPiece& b, double at, const Vector3& offset) {
-  return is_same_kind(a, b) &&
-         is_same(geometry::point_at(a.piece, at) + offset, geometry::point_at(b.piece, at)) &&
-         is_same(geometry::direction_at(a.piece, at), geometry::direction_at(b.piece, at));
-}
+// Of the moves beside an end of the run, in the order of the program. The one that is farthest from
+// the run may be longer or shorter: a plunge to another depth begins elsewhere.
+enum class Side { kLead, kTail };
 
-bool are_same_leads(std::span<const TimedPiece> a, std::span<const TimedPiece> b,
+bool are_same_moves(std::span<const TimedPiece> a, std::span<const TimedPiece> b, Side side,
                     const Vector3& offset) {
   if (a.size() != b.size()) return false;
-  for (std::size_t i = 1; i < a.size(); ++i) {
-    if (!is_same_move(a[i], b[i], offset)) return false;
+  const std::size_t farthest = side == Side::kLead ? 0 : a.size() - 1;
+  const double near_end = side == Side::kLead ? 1 : 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    if (i != farthest ? !is_same_move(a[i], b[i], offset)
+                      : !is_same_from(near_end, a[i], b[i], offset)) {
+      return false;
+    }
   }
-  return a.empty() || is_same_from_afar(a.front(), b.front(), 1, offset);
-}
-
-bool are_same_tails(std::span<const TimedPiece> a, std::span<const TimedPiece> b,
-                    const Vector3& offset) {
-  if (a.size() != b.size()) return false;
-  for (std::size_t i = 0; i + 1 < a.size(); ++i) {
-    if (!is_same_move(a[i], b[i], offset)) return false;
-  }
-  return a.empty() || is_same_from_afar(a.back(), b.back(), 0, offset);
+  return true;
 }
 
 // Which motion, feed and speed hold is said by the text anew where it has to be.
@@ -146,20 +146,21 @@ std::optional<Vector3> offset_of_repeat(RunInContext first, RunInContext run,
   const auto is_step = [step](double part) {
     return std::abs(part - step * std::round(part / step)) <= kSameNumber;
   };
-  const bool same =
-      is_step(offset.x()) && is_step(offset.y()) && is_step(offset.z()) &&
-      std::ranges::equal(
-          a.points, b.points,
-          [&](const Point3& p, const Point3& q) { return is_same(p + offset, q); }) &&
-      std::ranges::equal(
-          a.bends, b.bends,
-          [&](const RunBend& p, const RunBend& q) { return is_same_bend(p, q, offset); }) &&
-      std::ranges::equal(a.feeds, b.feeds,
-                         [](const FeedFrom& p, const FeedFrom& q) {
-                           return p.vertex == q.vertex && p.feed == q.feed;
-                         }) &&
-      a.speed_words == b.speed_words && are_same_leads(before.lead, now.lead, offset) &&
-      are_same_tails(before.tail, now.tail, offset);
+  const bool same = is_step(offset.x()) && is_step(offset.y()) && is_step(offset.z()) &&
+                    std::ranges::equal(
+                        a.points, b.points,
+                        [&](const Point3& p, const Point3& q) { return is_same(p + offset, q); }) &&
+                    std::ranges::equal(a.bends, b.bends,
+                                       [&](const RunBend& p, const RunBend& q) {
+                                         return is_same_bend(p, q, offset);
+                                       }) &&
+                    std::ranges::equal(a.feeds, b.feeds,
+                                       [](const FeedFrom& p, const FeedFrom& q) {
+                                         return p.vertex == q.vertex && p.feed == q.feed;
+                                       }) &&
+                    a.speed_words == b.speed_words &&
+                    are_same_moves(before.lead, now.lead, Side::kLead, offset) &&
+                    are_same_moves(before.tail, now.tail, Side::kTail, offset);
   return same ? std::optional(offset) : std::nullopt;
 }
 

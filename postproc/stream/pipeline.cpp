@@ -188,7 +188,7 @@ class TranslatedSmoothing {
         gcode::interpret(program, {.curves = options_.target->curves}, found);
     const Verification verification =
         verify({&read_.program, &read_.meaning}, {&program, &meaning},
-               {options_.tolerance_mm, options_.tolerance_kind, options_.side});
+               {options_.tolerance_mm, options_.tolerance_kind, options_.side, options_.target});
     if (!verification.proved() || gcode::has_error(found)) {
       if (!verification.violations.empty()) {
         const Violation& first = verification.violations.front();

@@ -14,12 +14,14 @@ another one in its own figure, and where a result is worse than it may be (docs/
 At the end the sums of each target, and how many of the blocks in runs of chords that are finer than the
 tolerance (at all but a tenth of the vertices) are in runs where a figure is clearly better (time -1 %,
 blocks -10 %, distance or roughness -50 %) and none is worse, the time by more than a control's period
-and a thousandth; what remains by reason. `--half`: programs whose names hash to an even or an odd number, so that one half stays apart.
+and a thousandth; what remains by reason. `--half`: programs whose names hash to an even or an odd
+number, so that one half stays apart.
 """
 
 import argparse
 import collections
 import concurrent.futures
+import functools
 import hashlib
 import json
 import os
@@ -88,6 +90,7 @@ def figures(report):
     return before, after
 
 
+@functools.lru_cache
 def period_of(batten, machine):
     """Seconds that nobody measures on a machine: the longer one of the two periods of its control."""
     shown = subprocess.run([batten, "machines", "--show", machine], check=True, capture_output=True, text=True).stdout
@@ -146,7 +149,6 @@ def main():
         squares = collections.defaultdict(lambda: [0.0, 0.0, 0.0])
         shares = collections.Counter()
         kept = {prefer: collections.Counter() for prefer in PREFERENCES}
-        periods = {}
         for file in files:
             of = {}
             for prefer in PREFERENCES:
@@ -158,9 +160,7 @@ def main():
                 continue
             for prefer, (before, after) in of.items():
                 report = reports[file, target, prefer]
-                if report["machine"]["name"] not in periods:
-                    periods[report["machine"]["name"]] = period_of(options.batten, report["machine"]["name"])
-                period = periods[report["machine"]["name"]]
+                period = period_of(options.batten, report["machine"]["name"])
                 marks = marks_of(prefer, of, near, len(report["runs"]), period)
                 print(f"{file.name[:44]:44} {target:8} {prefer:8}",
                       *(percent(after[key], before[key]) for key in before), *marks)

@@ -37,6 +37,35 @@ std::vector<std::string> events_of(const std::string& text, Language language) {
   return all;
 }
 
+// What is proved here `batten verify` proves for the target: not so an arc that the target refuses.
+TEST(ConversionWays, AreProvedForTheTarget) {
+  for (const char* target : {"heidenhain", "itnc530", "siemens"}) {
+    const SmoothOptions options = ways_to(target);
+    std::vector<bool> proved;
+    for (const double radius : {0.03517, 0.05123, 0.31257, 2.71253}) {
+      SCOPED_TRACE(testing::Message() << target << " " << radius);
+      const std::string text = fmt::format(
+          "G21 G17 G40 G90 G94\nG0 X0 Y0 Z5\nG1 X-1 F100\nG2 X{:.5f} Y0.00113 R{:.5f}\nG0 "
+          "Z6\nM30\n",
+          1.3 * radius - 1, radius);
+      const SmoothResult result = smoothed(text, options);
+      proved.push_back(result.proved);
+      if (!result.proved) {
+        EXPECT_NE(testing::PrintToString(told(result, text)).find("arc radius below the least"),
+                  std::string::npos);
+        continue;
+      }
+      const ReadText before(text);
+      const ReadText after(result.text, options.target->language);
+      const Promise promise(options.tolerance_mm, {}, {}, options.target);
+      EXPECT_TRUE(verify(before.read(), after.read(), promise).proved());
+    }
+    EXPECT_TRUE(proved.back());
+    EXPECT_EQ(proved.front(), options.target->language != Language::kKlartext)
+        << "small arcs become chords there";
+  }
+}
+
 // There and back, the same events: tools, speeds, functions, rapids, cuts with their feeds. Places
 // have three decimals, so nothing is rounded; arcs of Siemens may be cut in two.
 TEST(ConversionWays, ThereAndBackDoTheSame) {

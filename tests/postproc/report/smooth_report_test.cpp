@@ -1,11 +1,16 @@
 // What the reports of `batten smooth` tell of five runs, to people and to programs.
 #include "postproc/report/smooth_report.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <string>
 
 #include "tests/support/report_words.h"
+#include "tests/support/wavy_programs.h"
 
 namespace batten::postproc {
 namespace {
@@ -202,13 +207,13 @@ TEST_F(SmoothReports, HaveTheirFieldsInAFixedOrder) {
       "slow_share_after path_before path_after proved understood diagnostics ");
   EXPECT_EQ(keys_of(report["input"]), "file bytes blocks units ");
   EXPECT_EQ(keys_of(report["output"]), "file bytes blocks target ");
-  EXPECT_EQ(
-      keys_of(report["runs"][0]),
-      "first_line last_line points tolerance_mm status reason method methods form blocks_in "
-      "computed_blocks "
-      "blocks_out "
-      "deviation_mm proved noise_mm coarse_part max_curvature_before max_curvature_after bytes_in bytes_out "
-      "path_before path_after time_before_s time_after_s ");
+  EXPECT_EQ(keys_of(report["runs"][0]),
+            "first_line last_line points tolerance_mm status reason method methods form blocks_in "
+            "computed_blocks "
+            "blocks_out "
+            "deviation_mm proved noise_mm coarse_part max_curvature_before max_curvature_after "
+            "bytes_in bytes_out "
+            "path_before path_after time_before_s time_after_s ");
 }
 
 TEST_F(SmoothReports, SayTheFiguresOfTheResultToPrograms) {
@@ -273,6 +278,30 @@ TEST_F(SmoothReports, AreTheSameForAnyNumberOfThreads) {
 TEST_F(SmoothReports, SurviveNamesThatAreNotUtf8) {
   source_ = gcode::SourceText("Fr\xE4se.nc", "G21\n");
   EXPECT_EQ(json()["input"]["file"], "Fr\xEF\xBF\xBDse.nc");
+}
+
+// Teeth of 1 mm, all corners, and behind them a wave in 1 mm steps, whose chords are fine where it
+// bends least. Kept in parts they are one run of the report, as where nothing is tried.
+TEST(RunReports, SayWhereChordsAreCoarserThanTheTolerance) {
+  std::string text = head("G21");
+  for (int i = 1; i <= 200; ++i) {
+    text += fmt::format("{}X{} Y{}\n", i == 1 ? "G1 F300 " : "", i, i % 2);
+  }
+  for (int i = 201; i <= 800; ++i) text += fmt::format("X{} Y{:.4f}\n", i, std::sin(0.1 * i));
+  text += tail();
+  const auto coarse_part = [&text](double tolerance, Method method) {
+    SmoothOptions options = options_for("linuxcnc");
+    options.tolerance_mm = tolerance;
+    options.method = method;
+    const SmoothResult result = smoothed(text, options);
+    EXPECT_EQ(rewritten_runs(result), 0U);
+    EXPECT_EQ(result.runs.back().points, 801U);
+    return result.runs.back().coarse_part;
+  };
+  EXPECT_NEAR(coarse_part(0.01, Method::kNone), 0.25, 0.01);
+  const double whole = coarse_part(0.001, Method::kNone);
+  EXPECT_GT(whole, 0.3);
+  EXPECT_NEAR(coarse_part(0.001, Method::kFair), whole, 0.01);
 }
 
 }  // namespace

@@ -27,6 +27,7 @@ struct Pass {
   double last_height = 0;          // of its last vertex, off the wave
   std::string rest = "G4 P0.1\n";  // between its plunge and its first cut
   std::string plunge_feed = "300";
+  std::string lift = "";  // behind its last cut
 };
 
 std::string lines_of_pass(const Pass& pass) {
@@ -38,7 +39,7 @@ std::string lines_of_pass(const Pass& pass) {
     text += fmt::format("{}X{:.4f} Y{:.4f}{}{}\n", i == 1 ? "G1 " : "", pass.x + 0.4 * i, y,
                         i == 1 ? " F" + pass.feed : "", i == 40 ? pass.comment : "");
   }
-  return text + "G0 Z5\n";
+  return text + pass.lift + "G0 Z5\n";
 }
 
 ProgramPart part_of(const std::vector<Pass>& passes) {
@@ -98,6 +99,12 @@ TEST(RepeatedRuns, MayFollowFromPlungesOfOtherDepths) {
   EXPECT_EQ(firsts_in({{.rest = ""}, {.z = -2, .rest = ""}, {.x = 50, .z = -3.5, .rest = ""}}),
             (Firsts{0, 0, 0}));
   EXPECT_EQ(firsts_in({{.rest = ""}, {.rest = "", .plunge_feed = "600"}, {}}), (Firsts{0, 1, 2}));
+}
+
+// So does a lift to another height.
+TEST(RepeatedRuns, MayBeFollowedByLiftsToOtherHeights) {
+  EXPECT_EQ(firsts_in({{.lift = "G1 Z1 F300\n"}, {.z = -2, .lift = "G1 Z2 F300\n"}, {}}),
+            (Firsts{0, 0, 2}));
 }
 
 // The words of a pass but for its depth.

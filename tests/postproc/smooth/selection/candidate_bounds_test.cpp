@@ -15,10 +15,11 @@ namespace {
 // Chords of a millimetre are 30 um away from where the wave bends most, and at 300 mm/min no corner
 // costs time: nothing within 10 um could be faster or smaller, or nearer in as few blocks.
 TEST(CandidateBounds, GiveUpARunOfCoarseChords) {
-  const auto is_hopeless = [](double step) {
+  const auto is_hopeless = [](double step, Form output = Form::kAuto) {
     const OneRun run(
         wave_program({.lines = 100, .step = step, .height = 2, .length = 18, .feed = 300}));
-    const SmoothOptions options = options_for("linuxcnc");
+    SmoothOptions options = options_for("linuxcnc");
+    options.output = output;
     const RunContext context = run.context();
     SmoothOptions none = options;
     none.method = Method::kNone;
@@ -28,6 +29,7 @@ TEST(CandidateBounds, GiveUpARunOfCoarseChords) {
   };
   EXPECT_TRUE(is_hopeless(1));
   EXPECT_FALSE(is_hopeless(0.1));
+  EXPECT_FALSE(is_hopeless(1, Form::kArcs)) << "what is asked for by name is tried";
 }
 
 // The bound against every form that is made, by each model of a control. Joints are rounded by the
@@ -98,6 +100,22 @@ TEST(CandidateBounds, KnowThatAnotherFormMayBeAsFast) {
   const CandidateBounds bounds({run.run(), context, options}, so_far);
   EXPECT_FALSE(bounds.is_beaten(Form::kLines, 0.5 * old.blocks, 0));
   EXPECT_TRUE(bounds.is_beaten(Form::kLines, 2 * old.blocks, 2 * old.distance));
+}
+
+// What goes on faster from its neighbours is in its place faster than the bound from rest to rest.
+TEST(CandidateBounds, KnowWhatMayBeWonBesideTheRun) {
+  const OneRun run(wave_program());
+  RunContext context = run.context();
+  const SmoothOptions options = options_for("linuxcnc");
+  const SmoothedRun so_far = run.smooth(options);
+  const Figures& old = so_far.facts.scale.original;
+  const auto is_beaten = [&] {
+    const RunTask task{run.run(), context, options};
+    return CandidateBounds(task, so_far).is_beaten(Form::kLines, 2 * old.blocks, 2 * old.distance);
+  };
+  EXPECT_TRUE(is_beaten());
+  context.may_win = 0.5 * old.times.programmed;
+  EXPECT_FALSE(is_beaten());
 }
 
 // A control that joins lines may be faster than the directions of single ones allow.

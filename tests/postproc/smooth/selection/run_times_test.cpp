@@ -4,12 +4,9 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <string>
 #include <tuple>
 #include <utility>
 
-#include "postproc/machine/program_time/program_time.h"
 #include "postproc/runs/run_path.h"
 #include "tests/support/one_run.h"
 #include "tests/support/wavy_programs.h"
@@ -83,52 +80,6 @@ TEST(RunTimes, AreThoseUnderTheTolerancesOfG64) {
     EXPECT_EQ(before(words), cutting_time(motions, machine, gcode::PathMode::kBlending));
   }
   EXPECT_GT(before("G64 P0.002"), 1.2 * before("G64"));
-}
-
-// Engraved letters: chains of small arcs, each behind a plunge, under a G64 that lets the control
-// round the corner between them as far as the moves about it let it.
-std::string letters() {
-  std::string text = "G21 G90 G17 G64\nG0 Z3\n";
-  for (int letter = 0; letter < 12; ++letter) {
-    geometry::Vector2 at(7 * letter, 0);
-    double angle = 0.7 * letter;
-    text += fmt::format("G0 X{:.4f} Y0\nG1 F150 Z-1\n", at.x());
-    for (int i = 0; i < 6; ++i) {
-      const double side = (3 * letter + i * i) % 5 < 2 ? -1 : 1;
-      const double radius = 0.4 + 0.37 * ((2 * i + 5 * letter) % 6);
-      const double sweep = 0.5 + 0.15 * ((i + letter) % 7);
-      const geometry::Vector2 centre =
-          radius * side * geometry::Vector2(-std::sin(angle), std::cos(angle));
-      angle += side * sweep;
-      const geometry::Vector2 end =
-          at + centre - radius * side * geometry::Vector2(-std::sin(angle), std::cos(angle));
-      text += fmt::format("{} X{:.4f} Y{:.4f} I{:.4f} J{:.4f} F500\n", side > 0 ? "G3" : "G2",
-                          end.x(), end.y(), centre.x(), centre.y());
-      at = end;
-      angle += 0.05 * std::sin(3.7 * (6 * letter + i));  // they do not quite meet tangentially
-    }
-    text += "G0 Z3\n";
-  }
-  return text + "M2\n";
-}
-
-double seconds(const std::string& text, const Machine& machine) {
-  const ReadText read(text);
-  return time_program(read.program, read.meaning, machine, {}).seconds.sum();
-}
-
-// The control goes on from a plunge into the run behind it, into lines otherwise than into arcs.
-TEST(RunTimes, ChangeAsTheTimeOfTheProgramDoes) {
-  for (const char* target : {"linuxcnc", "marlin", "haas", "siemens"}) {
-    SCOPED_TRACE(target);
-    SmoothOptions options = options_for(target);
-    options.output = Form::kLines;
-    const SmoothResult result = smoothed(letters(), options);
-    EXPECT_GT(rewritten_runs(result), 5U);
-    EXPECT_NEAR(result.runs_after_s - result.runs_before_s,
-                seconds(result.text, *options.machine) - seconds(letters(), *options.machine),
-                2e-3);
-  }
 }
 
 }  // namespace
