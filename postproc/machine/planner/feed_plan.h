@@ -33,14 +33,6 @@ struct FeedPlan {
   int passed_jumps = 0;             // joints passed with an allowed jump in speed or acceleration
 };
 
-// Nodes in the time sqrt(v / jerk), half of what the machine needs for a change of its speed by v;
-// the plan gets more where it needs them. The error of the time falls with the square of it.
-inline constexpr double kPlanDensity = 6;
-
-// For plans that are compared, or stand for the time of a control: good to a permille, and 0.3 %
-// too slow at most where bends are slow. Between nodes limits may be exceeded by some percent.
-inline constexpr double kQuickPlanDensity = 2;
-
 // No limit is exceeded at the nodes and in the middle between them; between those by some 0.1 %
 // and at most 0.5 % with the default density. The time is that of a local optimum (the jerk limit
 // is not convex), from above, within a few 1e-4 on the paths whose optimum is known. Linear cost.

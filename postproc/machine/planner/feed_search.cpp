@@ -22,26 +22,40 @@ struct SearchTuning {
 };
 constexpr SearchTuning kSearch;
 
-// c.x <= 1, or <= 1 / sqrt(q) for the jerk.
-struct LimitSide {
+// Of the two sides of a limit, c.x <= right and -c.x <= right.
+using Sides = Eigen::Array2d;
+
+double difference(const Sides& of) { return of[0] - of[1]; }
+
+// |c.x| <= 1, or <= 1 / sqrt(q) for the jerk.
+struct Limit {
+  Sides slack = Sides::Ones();
+  Sides dual = Sides::Zero();
+  Sides inverse = Sides::Ones();  // of the slack
+  Sides missing = Sides::Zero();  // what the unknowns leave, less the slack
+  Sides slack_step = Sides::Zero();
+  Sides dual_step = Sides::Zero();
   Vector3d c = Vector3d::Zero();
-  double slack = 1;
-  double dual = 0;
-  double inverse = 1;  // of the slack
-  double missing = 0;  // what the unknowns leave, less the slack
-  double slack_step = 0;
-  double dual_step = 0;
 };
 
 struct PlaceState {
   Vector3d x = Vector3d::Zero();  // q, p, r
   double root = 0;                // 1 / sqrt(q)
-  std::size_t first = 0;          // of its sides
-  std::size_t jerk_sides = 0;
-  std::size_t sides = 0;
+  std::size_t first = 0;          // of its limits
+  std::size_t jerk_limits = 0;
+  std::size_t limits = 0;
 
   // By which 1 / sqrt(q) falls per q.
   [[nodiscard]] double tangent() const { return 0.5 * root * root * root; }
+};
+
+// What the limits of one place add to its system in q, p and r.
+struct PlaceSums {
+  Matrix3d square = Matrix3d::Zero();
+  Vector3d edge = Vector3d::Zero();  // that comes to the first row and to the first column
+  Vector3d base = Vector3d::Zero();
+  Vector3d center = Vector3d::Zero();
+  Vector3d unexplained = Vector3d::Zero();
 };
 
 class Search {
@@ -58,13 +72,17 @@ class Search {
   void add_springs();
   void find_step(double target);
   [[nodiscard]] double unexplained() const;
-  [[nodiscard]] std::span<LimitSide> sides_of(const PlaceState& at) {
-    return std::span(sides_).subspan(at.first, at.sides);
+  [[nodiscard]] std::span<Limit> limits_of(const PlaceState& at) {
+    return std::span(limits_).subspan(at.first, at.limits);
+  }
+  // The gap of each side that the target asks for.
+  [[nodiscard]] double per_side(double gap) const {
+    return gap / (2 * static_cast<double>(limits_.size()));
   }
 
   const SearchProblem& problem_;
   std::vector<double> x_;
-  std::vector<LimitSide> sides_;
+  std::vector<Limit> limits_;
   std::vector<PlaceState> places_;
   std::vector<double> base_;         // the right side for a target of 0, then the step
   std::vector<double> center_;       // what a target of 1 adds to it
@@ -78,18 +96,16 @@ class Search {
 
 Search::Search(const SearchProblem& problem, std::vector<double> start)
     : problem_(problem), x_(std::move(start)), matrix_(problem.unknowns) {
-  sides_.reserve(2 * problem.rows.size() + problem.places.size());
+  limits_.reserve(problem.rows.size() + problem.places.size());
   for (const SearchPlace& place : problem.places) {
     PlaceState& at = places_.emplace_back();
-    at.first = sides_.size();
-    at.jerk_sides = 2 * place.jerk_rows;
+    at.first = limits_.size();
+    at.jerk_limits = place.jerk_rows;
     for (std::size_t k = 0; k < place.rows; ++k) {
-      const Vector3d& c = problem.rows[place.first_row + k];
-      sides_.push_back({.c = c});
-      sides_.push_back({.c = -c});
+      limits_.emplace_back().c = problem.rows[place.first_row + k];
     }
-    if (!std::isinf(place.most)) sides_.push_back({.c = Vector3d(1 / place.most, 0, 0)});
-    at.sides = sides_.size() - at.first;
+    if (!std::isinf(place.most)) limits_.emplace_back().c[0] = 1 / place.most;
+    at.limits = limits_.size() - at.first;
   }
 }
 
@@ -111,56 +127,70 @@ double Search::seconds() const {
 // All products slack * dual alike.
 void Search::start_slacks(const SearchRule& rule) {
   find_states();
-  const double product = rule.first_gap * seconds() / static_cast<double>(sides_.size());
+  const double product = per_side(rule.first_gap * seconds());
   for (const PlaceState& at : places_) {
-    const std::span<LimitSide> sides = sides_of(at);
-    for (std::size_t i = 0; i < sides.size(); ++i) {
-      const double right = i < at.jerk_sides ? at.root : 1;
-      sides[i].slack = std::max(right - sides[i].c.dot(at.x), rule.least_slack * right);
-      sides[i].dual = product / sides[i].slack;
+    const std::span<Limit> limits = limits_of(at);
+    for (std::size_t i = 0; i < limits.size(); ++i) {
+      const double right = i < at.jerk_limits ? at.root : 1;
+      const double used = limits[i].c.dot(at.x);
+      limits[i].slack = Sides(right - used, right + used).max(rule.least_slack * right);
+      limits[i].dual = product / limits[i].slack;
     }
   }
 }
 
-// Goes these shares of the last step and adds what is needed for the next.
+// Goes these shares of the last step and adds what is needed for the next. The gradient of a side
+// is c or -c, of a jerk's with the tangent of its right side.
 void Search::add_place(const SearchPlace& place, const PlaceState& at, double primal, double dual) {
-  const double slope = -place.time * at.tangent();  // of the time, by q
-  Matrix3d square = Matrix3d::Zero();
-  square(0, 0) = -1.5 * slope * at.root * at.root;
-  Vector3d base(-slope, 0, 0);
-  Vector3d center = Vector3d::Zero();
-  Vector3d unexplained(slope, 0, 0);
-  const std::span<LimitSide> sides = sides_of(at);
-  for (std::size_t i = 0; i < sides.size(); ++i) {
-    LimitSide& side = sides[i];
-    const bool of_jerk = i < at.jerk_sides;
-    side.slack += primal * side.slack_step;
-    side.dual += dual * side.dual_step;
+  PlaceSums sums;
+  double least = 1;  // room, as part of the limit
+  const std::span<Limit> limits = limits_of(at);
+  for (std::size_t i = 0; i < limits.size(); ++i) {
+    Limit& limit = limits[i];
+    const bool of_jerk = i < at.jerk_limits;
     const double right = of_jerk ? at.root : 1;
-    const double room = right - side.c.dot(at.x);
-    side.missing = room - side.slack;
-    side.inverse = 1 / side.slack;
-    gap_ += side.slack * side.dual;
-    excess_ = std::max(excess_, -room / right);
-    Vector3d g = side.c;
-    if (of_jerk) g[0] += at.tangent();
-    const double weight = side.dual * side.inverse;
-    const Vector3d weighted = weight * g;
-    square.noalias() += weighted * g.transpose();
-    base += side.missing * weighted;
-    center -= side.inverse * g;
-    unexplained += side.dual * g;
+    const double tangent = of_jerk ? at.tangent() : 0;
+    const double used = limit.c.dot(at.x);
+    const Sides room(right - used, right + used);
+    limit.slack += primal * limit.slack_step;
+    limit.dual += dual * limit.dual_step;
+    limit.missing = room - limit.slack;
+    limit.inverse = 1 / limit.slack;
+    gap_ += (limit.slack * limit.dual).sum();
+    least = std::min(least, room.minCoeff() / right);
+    const Sides weight = limit.dual * limit.inverse;
+    const Sides pull = weight * limit.missing;
+    const double both = weight.sum();
+    const Vector3d weighted = both * limit.c;
+    sums.square.noalias() += weighted * limit.c.transpose();
+    sums.edge += tangent * difference(weight) * limit.c;
+    sums.square(0, 0) += tangent * tangent * both;
+    sums.base += difference(pull) * limit.c;
+    sums.base[0] += tangent * pull.sum();
+    sums.center -= difference(limit.inverse) * limit.c;
+    sums.center[0] -= tangent * limit.inverse.sum();
+    sums.unexplained += difference(limit.dual) * limit.c;
+    sums.unexplained[0] += tangent * limit.dual.sum();
   }
-  for (Eigen::Index a = 0; a < place.sums.cols(); ++a) {
-    const Vector3d w = place.sums.col(a);
-    const Vector3d by = square * w;
+  excess_ = std::max(excess_, -least);
+  const double slope = -place.time * at.tangent();  // of the time, by q
+  sums.square(0, 0) -= 1.5 * slope * at.root * at.root;
+  sums.square.col(0) += sums.edge;
+  sums.square.row(0) += sums.edge.transpose();
+  sums.base[0] -= slope;
+  sums.unexplained[0] += slope;
+  using Eigen::Matrix4d;
+  using Eigen::Vector4d;
+  const Matrix4d square = place.sums.transpose() * (sums.square * place.sums);
+  const Vector4d base = place.sums.transpose() * sums.base;
+  const Vector4d center = place.sums.transpose() * sums.center;
+  const Vector4d unexplained = place.sums.transpose() * sums.unexplained;
+  for (int a = 0; a < 4; ++a) {
     const std::size_t row = place.first + static_cast<std::size_t>(a);
-    for (Eigen::Index b = 0; b <= a; ++b) {
-      matrix_.at(row, static_cast<int>(a - b)) += by.dot(place.sums.col(b));
-    }
-    base_[row] += base.dot(w);
-    center_[row] += center.dot(w);
-    unexplained_[row] += unexplained.dot(w);
+    for (int b = 0; b <= a; ++b) matrix_.at(row, a - b) += square(a, b);
+    base_[row] += base[a];
+    center_[row] += center[a];
+    unexplained_[row] += unexplained[a];
   }
 }
 
@@ -209,14 +239,15 @@ void Search::find_step(double target) {
     const PlaceState& at = places_[k];
     const Vector3d change = problem_.places[k].state_of(base_);
     primal = std::max(primal, -kSearch.to_limit * change[0] / ((1 - kSearch.least_part) * at.x[0]));
-    const std::span<LimitSide> sides = sides_of(at);
-    for (std::size_t i = 0; i < sides.size(); ++i) {
-      LimitSide& side = sides[i];
-      const double moved = i < at.jerk_sides ? at.tangent() * change[0] : 0;
-      side.slack_step = side.missing - side.c.dot(change) - moved;
-      side.dual_step = (target - side.dual * side.slack_step) * side.inverse - side.dual;
-      primal = std::max(primal, -side.slack_step * side.inverse);
-      dual = std::max(dual, -side.dual_step / side.dual);
+    const std::span<Limit> limits = limits_of(at);
+    for (std::size_t i = 0; i < limits.size(); ++i) {
+      Limit& limit = limits[i];
+      const double moved = i < at.jerk_limits ? at.tangent() * change[0] : 0;
+      const double along = limit.c.dot(change);
+      limit.slack_step = limit.missing - Sides(moved + along, moved - along);
+      limit.dual_step = (target - limit.dual * limit.slack_step) * limit.inverse - limit.dual;
+      primal = std::max(primal, -(limit.slack_step * limit.inverse).minCoeff());
+      dual = std::max(dual, -(limit.dual_step / limit.dual).minCoeff());
     }
   }
   primal_share_ = kSearch.to_limit / primal;
@@ -231,7 +262,7 @@ SearchResult Search::run(const SearchRule& rule) {
   for (int step = 0; step < rule.most_steps && !found; ++step) {
     double wanted = std::max(rule.least_gap_part, 1 - share) * gap_;
     wanted = std::max(wanted, std::min(gap_, rule.per_unexplained * unexplained()));
-    const double target = wanted / static_cast<double>(sides_.size());
+    const double target = per_side(wanted);
     for (std::size_t i = 0; i < base_.size(); ++i) base_[i] += target * center_[i];
     if (!matrix_.solve(base_)) break;
     find_step(target);
