@@ -15,7 +15,8 @@
 namespace batten::postproc {
 
 std::optional<Candidate> make_candidate(const RunTask& task, const RunTimes& times,
-                                        const OutputPlan& plan, const RunFacts& facts) {
+                                        const OutputPlan& plan, const RunFacts& facts,
+                                        std::span<const Candidate> there) {
   const auto& [run, context, options, scope, memo] = task;
   gcode::ModalState before = context.before;
   if (!options.words.before_run.empty()) {  // after words of a profile it says motion and feed
@@ -29,6 +30,9 @@ std::optional<Candidate> make_candidate(const RunTask& task, const RunTimes& tim
     // The comment that says what was done takes a number, too.
     if (numbered_lines(text->text) + 1 > context.numbers.blocks) return std::nullopt;
     text->text = with_numbers(text->text, *context.numbers.first);
+  }
+  if (std::ranges::any_of(there, [&](const Candidate& c) { return c.text.text == text->text; })) {
+    return std::nullopt;
   }
   Candidate candidate;
   candidate.form = plan.form;
@@ -156,7 +160,7 @@ class CurveForms {
   [[nodiscard]] std::optional<Candidate> newly_made(const Offer& offer) const {
     const std::optional<OutputPlan> plan = plan_of(offer);
     if (!plan) return std::nullopt;
-    auto candidate = make_candidate(task_, setting_.times, *plan, facts());
+    auto candidate = make_candidate(task_, setting_.times, *plan, facts(), result_.candidates);
     if (!candidate) return std::nullopt;
     candidate->method = name_of(curve_.method);
     candidate->max_curvature = bends_.greatest();

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 
 #include "postproc/smooth/forms/output_plan.h"
 #include "postproc/smooth/methods/run_curve.h"
@@ -57,10 +58,11 @@ struct CurveOfRun {
 };
 
 // The candidate's method and curvature are left to who knows them. Nothing where the target cannot
-// say the plan, or there are not enough block numbers.
+// say the plan, or there are not enough block numbers, or one of those that are there has the same
+// text.
 [[nodiscard]] std::optional<Candidate> make_candidate(const RunTask& task, const RunTimes& times,
-                                                      const OutputPlan& plan,
-                                                      const RunFacts& facts);
+                                                      const OutputPlan& plan, const RunFacts& facts,
+                                                      std::span<const Candidate> there = {});
 
 // Adds candidates to `result`, and what it says of those that were not made.
 void add_forms(const FormSetting& setting, const CurveOfRun& curve, SmoothedRun& result);
