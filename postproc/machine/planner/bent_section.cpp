@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "postproc/machine/planner/speed_cubic.h"
+
 namespace batten::postproc {
 
 using geometry::PathPiece;
@@ -60,29 +62,6 @@ constexpr std::array<RefineRule, 4> kRefinements = {RefineRule{0.002, 0.5}, Refi
 // Of a plan for its time alone. Without any it would be half a percent too slow.
 constexpr std::size_t kQuickRefinements = 1;
 
-// q = (ds/dt)^2 and its first two derivatives by the distance s.
-struct PlanState {
-  double q = 0;
-  double p = 0;
-  double r = 0;
-
-  [[nodiscard]] Vector3 acceleration(const LengthDerivatives& x) const {
-    return x.second * q + x.first * (p / 2);
-  }
-  [[nodiscard]] Vector3 jerk(const LengthDerivatives& x) const {
-    return (x.third * q + x.second * (1.5 * p) + x.first * (0.5 * r)) * std::sqrt(q);
-  }
-};
-
-// `s` mm after the start of an interval with q and p at both ends: w = {q0, p0, q1, p1}.
-PlanState state_in(const double* w, double length, double s) {
-  const double rise = (w[2] - w[0]) / length;
-  const double r0 = (6 * rise - 4 * w[1] - 2 * w[3]) / length;
-  const double third = 6 * (w[1] + w[3] - 2 * rise) / (length * length);
-  return {w[0] + s * (w[1] + s * (r0 / 2 + s * third / 6)), w[1] + s * (r0 + s * third / 2),
-          r0 + s * third};
-}
-
 // By length.
 double middle_of(const PathPiece& piece, const FeedInterval& at) {
   return parameter_after(piece, at.t0, at.t1, at.length, 0.5 * at.length);
@@ -93,7 +72,7 @@ double greatest_part(const Vector3& value, const Vector3& limit) {
 }
 
 // The greatest part of any limit that a state uses.
-double use_of_limits(const LengthDerivatives& x, const PlanState& at,
+double use_of_limits(const LengthDerivatives& x, const PlannedState& at,
                      const KinematicPathLimits& limits) {
   const double v = std::sqrt(at.q);
   return std::max({v / limits.feed, greatest_part(x.first * v, limits.speed),
@@ -106,7 +85,7 @@ double use_of_limits(const LengthDerivatives& x, const PlanState& at,
 
 // How much of its limit the jerk along the path changes by, or the acceleration where the
 // jerk has no limit.
-double change_along(const LengthDerivatives& x, const PlanState& from, const PlanState& to,
+double change_along(const LengthDerivatives& x, const PlannedState& from, const PlannedState& to,
                     const KinematicPathLimits& limits) {
   const LimitsAlong along = limits_along(x.first, limits);
   if (std::isinf(along.jerk)) return 0.5 * std::abs(to.p - from.p) / along.acceleration;
@@ -165,11 +144,6 @@ bool raise_above_zero(std::span<const FeedInterval> intervals, std::vector<doubl
 
 GridRule grid_of(double density) {
   return {.density = density, .nodes_per_bend = 2, .rest_share = kRestShare};
-}
-
-double interval_seconds(double length, const double* w) {
-  const double middle = state_in(w, length, 0.5 * length).q;
-  return length / 6 * (1 / std::sqrt(w[0]) + 4 / std::sqrt(middle) + 1 / std::sqrt(w[2]));
 }
 
 BentSection::BentSection(std::span<const PathPiece> path, const PlannedSection& section,
@@ -287,7 +261,7 @@ bool BentSection::is_too_long(std::size_t number, const RefineRule& rule) const 
   // The limits are kept at both ends and in the middle: look between those.
   return std::ranges::any_of(std::array{0.125, 0.25, 0.375, 0.625, 0.75, 0.875}, [&](double part) {
     const double t = at.t0 + part * (at.t1 - at.t0);
-    const PlanState state = state_at(length_between(piece, at.t0, t));
+    const PlannedState state = state_at(length_between(piece, at.t0, t));
     return use_of_limits(derivatives_by_length(piece, t), state, limits) > 1 + rule.excess;
   });
 }
@@ -304,7 +278,7 @@ std::size_t BentSection::refine(const RefineRule& rule) {
       half.t1 = middle_of(piece, half);
       half.length = length_between(piece, half.t0, half.t1);
       half.end_bound = KinematicPathLimits::kNone;
-      const PlanState middle = state_in(window, intervals[k].length, half.length);
+      const PlannedState middle = state_in(window, intervals[k].length, half.length);
       half.end_speed = std::sqrt(middle.q);
       finer.push_back(half);
       finer_x.insert(finer_x.end(), {middle.q, middle.p});

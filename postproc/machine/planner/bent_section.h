@@ -71,7 +71,4 @@ class BentSection {
   SectionWindows windows_;
 };
 
-// Of an interval with q and p at both ends: w = {q0, p0, q1, p1}. Simpson's rule on 1 / speed.
-[[nodiscard]] double interval_seconds(double length, const double* w);
-
 }  // namespace batten::postproc

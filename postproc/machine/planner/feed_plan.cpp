@@ -8,6 +8,7 @@
 #include "postproc/machine/planner/bent_section.h"
 #include "postproc/machine/planner/feed_plan_straight.h"
 #include "postproc/machine/planner/feed_sections.h"
+#include "postproc/machine/planner/speed_cubic.h"
 
 namespace batten::postproc {
 namespace {

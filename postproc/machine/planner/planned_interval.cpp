@@ -20,7 +20,7 @@ PlannedState PlannedInterval::at(double s) const {
     back.p = -back.p;
     return back;
   }
-  return cubic(s);
+  return state_in(window_.data(), length_, s);
 }
 
 double PlannedInterval::distance_after(double time) const {
@@ -46,15 +46,6 @@ PlannedState PlannedInterval::power(double q1, double slope, double s) const {
   if (!(s > 0)) return {0, m > 1.01 ? 0 : q1 / length_, 0};
   const double q = q1 * std::pow(s / length_, m);
   return {q, m * q / s, m * (m - 1) * q / (s * s)};
-}
-
-PlannedState PlannedInterval::cubic(double s) const {
-  const auto& [q0, p0, q1, p1] = window_;
-  const double rise = (q1 - q0) / length_;
-  const double r0 = (6 * rise - 4 * p0 - 2 * p1) / length_;
-  const double third = 6 * (p0 + p1 - 2 * rise) / (length_ * length_);
-  return {q0 + s * (p0 + s * (r0 / 2 + s * third / 6)), p0 + s * (r0 + s * third / 2),
-          r0 + s * third};
 }
 
 // Distance grows with this power of the time: 1 / (1 - m / 2).

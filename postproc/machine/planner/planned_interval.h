@@ -4,15 +4,9 @@
 #include <array>
 
 #include "postproc/machine/planner/feed_plan.h"
+#include "postproc/machine/planner/speed_cubic.h"
 
 namespace batten::postproc {
-
-// q = (ds/dt)^2 and its first two derivatives by the distance s, mm.
-struct PlannedState {
-  double q = 0;
-  double p = 0;
-  double r = 0;
-};
 
 // By the distance (mm) and time (s) from its start.
 class PlannedInterval {
@@ -28,7 +22,6 @@ class PlannedInterval {
 
  private:
   [[nodiscard]] PlannedState power(double q1, double slope, double s) const;
-  [[nodiscard]] PlannedState cubic(double s) const;
   [[nodiscard]] double growth(double p1, double q1) const;
   [[nodiscard]] double seconds(double s) const;
 

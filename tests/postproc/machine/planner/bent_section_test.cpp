@@ -11,6 +11,7 @@
 #include "geometry/fitting/corners/guo_corner.h"
 #include "geometry/path/path.h"
 #include "postproc/machine/planner/feed_plan.h"
+#include "postproc/machine/planner/speed_cubic.h"
 #include "tests/support/planned_paths.h"
 
 namespace batten::postproc {
