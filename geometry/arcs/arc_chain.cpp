@@ -6,6 +6,7 @@
 #include <span>
 #include <utility>
 
+#include "geometry/basic/operations.h"
 #include "geometry/basic/point.h"
 #include "geometry/basic/rounding.h"
 
@@ -217,6 +218,7 @@ class ArcChain {
     if (!sides.any()) return false;
     for (std::size_t i = curve_.index_of(from); i < curve_.size(); ++i) {
       if (curve_.breaks()[i] >= to) break;
+      count_operations(2);
       if (!stays_near(curve_.part(i, from, to), arc, sides)) return false;
     }
     return limits_.flat || heights_hold(arc, from, to, from_height, to_height);
@@ -255,6 +257,7 @@ class ArcChain {
     if ((b - a).norm() <= kSamePlace) return std::nullopt;
     const Vector2 leaving = unit_vector(start.angle);
     const Vector2 arriving = unit_vector(end.angle);
+    count_operations(15);
     const auto joint = biarc_joint(a, leaving, b, arriving, balance);
     if (!joint) return std::nullopt;
     const Point2 middle = rounded_in_plane(joint->place);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/basic/operations.h"
 #include "geometry/basic/point.h"
 #include "geometry/basic/rounding.h"
 
@@ -219,6 +220,7 @@ ArcReach PlaneBand::reach(const BandEntry& entry) const {
   for (std::size_t step = limits_.stride; step > 0; step = step > 1 ? 1 : 0) {
     while (i + step <= samples_.size() && closing.narrow(samples_[i + step - 1].place)) i += step;
   }
+  count_operations(1 + (i - entry.next) / 4);
   return {i, closing.width()};
 }
 

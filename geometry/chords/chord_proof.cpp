@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "geometry/basic/operations.h"
 #include "geometry/path/cubic_polynomial.h"
 
 namespace batten::geometry {
@@ -306,6 +307,7 @@ ControlCoordinates ChordsFrom::part_before(std::size_t i, double end) const {
 }
 
 ChordHeight ChordsFrom::to(double end) const {
+  count_operations(2);
   std::size_t last = piece_at(end);
   if (last > first_ && pieces_.breaks()[last] >= end) --last;
   const ControlCoordinates ending = part_before(last, end);

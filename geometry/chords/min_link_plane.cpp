@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <utility>
 
+#include "geometry/basic/operations.h"
 #include "geometry/path/plane_curve.h"
 
 namespace batten::geometry {
@@ -282,6 +283,7 @@ class GateSweep {
     std::vector<SightLimits> farthest;         // what got to the last gate of `next`
     from_each_start(now, [&](Sight sight, std::size_t j) {
       for (; j <= last_gate(); ++j) {
+        count_operations(1);
         const Offsets seen = sight.pass(gates_[j]);
         if (seen.empty()) break;
         if (j > next.last()) farthest.clear();

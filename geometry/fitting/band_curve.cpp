@@ -10,6 +10,8 @@
 #include <string>
 #include <utility>
 
+#include "geometry/basic/operations.h"
+
 namespace batten::geometry {
 
 namespace {
@@ -314,6 +316,7 @@ class BandBarrier {
   // step, about twice what the function was above its least value; nothing where rounding no
   // longer allows a step. Requires `at` strictly inside.
   [[nodiscard]] std::optional<double> step(BarrierPoint& at) {
+    count_operations(3 * at.points.size() + 2 * band_.rows.size());
     const auto along = direction(at);
     if (!along || !(along->decrement > 0)) return std::nullopt;
     const double length = best_length(at, *along);

@@ -12,6 +12,8 @@
 #include <string>
 #include <utility>
 
+#include "geometry/basic/operations.h"
+
 namespace batten::geometry {
 
 namespace {
@@ -545,6 +547,7 @@ class AdaptiveFit {
 
   void solve(IndexRange free, Phase phase) {
     const IndexRange samples = samples_of(free);
+    count_operations(samples.end - samples.begin);
     const bool solved = system_.solve(spline_, states_, samples, free);
     for (std::size_t i = free.begin; i < free.end; ++i) {
       PointState& point = points_[i];

@@ -100,6 +100,7 @@ Json json_of(const RunReport& run) {
           {"blocks_out", run.blocks_out},
           {"deviation_mm", run.deviation_mm},
           {"proved", run.proved},
+          {"cut_short", run.is_cut_short},
           {"noise_mm", run.noise_mm},
           {"coarse_part", run.coarse_part},
           {"max_curvature_before", run.max_curvature_before},

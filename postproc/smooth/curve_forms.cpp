@@ -9,6 +9,7 @@
 
 #include "gcode/controls/arc_rules.h"
 #include "gcode/curves/curve_format.h"
+#include "geometry/basic/operations.h"
 #include "postproc/runs/run_path.h"
 #include "postproc/smooth/selection/selection.h"
 
@@ -23,6 +24,7 @@ std::optional<Candidate> make_candidate(const RunTask& task, const RunTimes& tim
     before.motion = gcode::MotionMode::kUnknown;
     before.feed.reset();
   }
+  geometry::count_operations(100 * plan.moves.size());
   auto text = write_run(plan, run, context.program, *options.target, before, context.after,
                         context.line_end);
   if (!text) return std::nullopt;
@@ -95,9 +97,12 @@ class CurveForms {
       make_best();
       if (has_form(Form::kCurves)) return;
     }
+    // Lines of fewest links are the dearest, chords the cheapest of all.
+    const bool are_dear = linearize_of(task_.options) == Linearize::kMinLink;
+    if (wanted != Form::kArcs && !are_dear) offer_lines();
     if (wanted != Form::kLines) offer_arcs();
     if (wanted != Form::kLines && is_fair && is_first_) offer_arc_splines();
-    if (wanted != Form::kArcs) offer_lines();
+    if (wanted != Form::kArcs && are_dear) offer_lines();
     make_best();
   }
 
@@ -112,6 +117,12 @@ class CurveForms {
                                [&](const Candidate& c) { return c.form == form; });
   }
 
+  // Whether there is a candidate, of the form that is asked for by name.
+  [[nodiscard]] bool has_one() const {
+    const Form wanted = task_.options.output;
+    return wanted == Form::kAuto ? !result_.candidates.empty() : has_form(wanted);
+  }
+
   // Where the digits of the target bound how near is worth trying, two of them are the same.
   void add_offer(Offer next) {
     if (offers_.empty() || !offers_.back().is_same_as(next)) offers_.push_back(std::move(next));
@@ -123,6 +134,10 @@ class CurveForms {
     for (Offer& offer : offers_) {
       if (!all && setting_.bounds.is_beaten(offer.form, offer.blocks, offer.distance)) {
         result_.left_out = true;
+        continue;
+      }
+      if (is_bounded(task_) && setting_.budget.is_spent() && has_one()) {
+        result_.left_out = result_.is_cut_short = true;
         continue;
       }
       if (!all && offer.form == Form::kArcs && task_.memo == nullptr) {

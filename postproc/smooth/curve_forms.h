@@ -11,6 +11,7 @@
 #include "postproc/smooth/selection/candidate.h"
 #include "postproc/smooth/selection/candidate_bounds.h"
 #include "postproc/smooth/selection/meant_path.h"
+#include "postproc/smooth/selection/run_budget.h"
 #include "postproc/smooth/selection/run_times.h"
 
 namespace batten::postproc {
@@ -47,6 +48,7 @@ struct FormSetting {
   const RunTimes& times;
   const CandidateBounds& bounds;
   const MeantPath& meant;
+  const RunBudget& budget;
 };
 
 struct CurveOfRun {

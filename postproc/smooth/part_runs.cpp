@@ -335,6 +335,7 @@ class PartSmoother {
     for (RunPiece& piece : pieces) {
       fresh.push_back(works.size());
       RunState part{sections.size(), context_of(part_.program, part_.meaning, piece.section)};
+      part.context.moves_of_program = runs_.moves;
       part.cut_run = runs_.cut_runs.size();
       part.first = piece.first;
       part.last = piece.last;
@@ -402,6 +403,10 @@ PartRuns find_runs(const ProgramPart& part, const SmoothOptions& options,
       runs.works.back().selection.reason = gcode::reason::kCrossesItself;
     }
   }
+  for (const RunState& work : runs.works) {
+    runs.moves += motion_count(std::get<Run>(runs.sections[work.section].content));
+  }
+  for (RunState& work : runs.works) work.context.moves_of_program = runs.moves;
   BoundaryTiming(part, options, runs).run();
   return runs;
 }

@@ -34,6 +34,7 @@ struct PartRuns {
   NearParts near;
   std::vector<Section> sections;
   std::vector<RunState> works;  // of the sections that are runs, in order
+  std::size_t moves = 0;        // of all runs
   std::vector<CutRun> cut_runs;
   std::vector<gcode::Diagnostics> notes;  // on the bands of the runs (postproc/runs/band_notes.h)
 };

@@ -61,6 +61,7 @@ class RunSmoother {
                   gcode::millimetres_per(task.context.before.units)),
         times_(times),
         bounds_(task, result),
+        budget_(motion_count(task.run), task.context.moves_of_program),
         result_(result) {}
 
   // Why the run is kept, or nothing.
@@ -148,6 +149,10 @@ class RunSmoother {
   }
 
   void try_curve(Method method, const CurveRequest& request) {
+    if (is_bounded(task_) && budget_.is_spent()) {
+      result_.is_cut_short = result_.left_out = true;
+      return;
+    }
     const auto curve = curve_by(method, request);
     if (curve) add_candidates_of(*curve);
   }
@@ -158,8 +163,8 @@ class RunSmoother {
     if (!(left > 0)) return;
     fits_ = true;
     const CurvatureProfile bends(curve.path.curve);
-    add_forms({task_, times_, bounds_, *meant_}, {curve, bends, shares_.form, left, is_first_},
-              result_);
+    add_forms({task_, times_, bounds_, *meant_, budget_},
+              {curve, bends, shares_.form, left, is_first_}, result_);
     is_first_ = false;
   }
 
@@ -213,7 +218,10 @@ class RunSmoother {
     if (!tube_is_worth_trying(run().points.size(), least, best_time())) return;
     // What several settings share does not depend on what one of them has found.
     const bool all = task_.scope == CandidateScope::kAll || task_.memo != nullptr;
-    if (!all) request.rival = best_time();
+    if (!all) {
+      request.rival = best_time();
+      request.operations = static_cast<double>(budget_.left());
+    }
     try_curve(Method::kTube, request);
   }
 
@@ -264,6 +272,7 @@ class RunSmoother {
   double rounding_;  // mm, greatest error of one printed coordinate of the run
   const RunTimes& times_;
   CandidateBounds bounds_;
+  RunBudget budget_;
   std::optional<geometry::SmoothCurve> fair_;
   std::optional<MeantPath> meant_;
   bool is_first_ = true;  // the next curve that candidates are made of
@@ -366,7 +375,7 @@ std::optional<SmoothedRun> smooth_repeat(const Run& run, const RunContext& conte
   result.facts.scale.known = first.facts.scale.known;
   result.reason = first.reason;
   result.left_out = first.left_out;
-  result.passed_over = first.passed_over;
+  result.is_cut_short = first.is_cut_short;
   const RunTask task{run, context, options};
   for (const Candidate& there : first.candidates) {
     const auto plan = there.plan ? translated(*there.plan, offset) : std::nullopt;

@@ -104,6 +104,7 @@ class Reporter {
     before_it.bytes_out += r.bytes_out;
     before_it.path_before += r.path_before;
     before_it.path_after += r.path_after;
+    before_it.is_cut_short |= r.is_cut_short;
     before_it.time_before_s += r.time_before_s;
     before_it.time_after_s += r.time_after_s;
   }
@@ -129,6 +130,7 @@ class Reporter {
     r.max_curvature_before = facts.max_curvature;
     r.max_curvature_after = chosen != nullptr ? chosen->max_curvature : facts.max_curvature;
     r.methods = method_times(work.smoothed);
+    r.is_cut_short = work.smoothed.is_cut_short;
     r.time_before_s = before.times.programmed;
     r.time_after_s = after.times.programmed;
     if (chosen == nullptr) {
@@ -291,11 +293,12 @@ std::string_view complaint(ExitCode verdict, bool strict) {
 gcode::Diagnostics notes_on_runs(std::span<const RunReport> runs, const gcode::Program& program,
                                  const gcode::Control& target) {
   gcode::Diagnostics notes;
+  const auto is_rewritten = [](const RunReport& run) {
+    return run.status == RunStatus::kRewritten;
+  };
   const auto tell_first = [&](gcode::Severity severity, const char* id, std::string message,
                               const auto& holds) {
-    const auto first = std::ranges::find_if(runs, [&](const RunReport& run) {
-      return run.status == RunStatus::kRewritten && holds(run);
-    });
+    const auto first = std::ranges::find_if(runs, holds);
     if (first == runs.end()) return;
     notes.push_back({severity, id,
                      program.blocks[first->first_line - program.blocks.front().line].span,
@@ -306,17 +309,24 @@ gcode::Diagnostics notes_on_runs(std::span<const RunReport> runs, const gcode::P
                "target " + std::string(target.name) +
                    " has no certain comment, so nothing in the program says that it was smoothed: "
                    "smoothing it once more would add its tolerance again",
-               [](const RunReport&) { return true; });
+               is_rewritten);
   }
   if (target.curves != nullptr && !target.curves->caution.empty()) {
     tell_first(gcode::Severity::kWarning, "curves-unverified", std::string(target.curves->caution),
-               [](const RunReport& run) { return run.form == Form::kCurves || run.had_curves; });
+               [&](const RunReport& run) {
+                 return is_rewritten(run) && (run.form == Form::kCurves || run.had_curves);
+               });
   }
   tell_first(
       gcode::Severity::kNote, "chords-for-steps",
       "the equal steps of --linearize ilca are too many for this run; found chords, expected "
       "equal steps",
       [](const RunReport& run) { return run.chords_for_steps; });
+  tell_first(
+      gcode::Severity::kNote, "search-cut-short",
+      "not every form and method was tried for this run: its moves took as much work as each may "
+      "take",
+      [](const RunReport& run) { return run.is_cut_short; });
   const gcode::ArcChords& own = target.chords;
   tell_first(
       gcode::Severity::kNote, "arcs-as-chords",

@@ -58,6 +58,7 @@ struct RunReport {
   bool proved = false;
   bool chords_for_steps = false;  // see OutputPlan
   bool arcs_as_chords = false;
+  bool is_cut_short = false;  // see SmoothedRun
   bool closed = false;       // it ends where it begins; of a cut run its first part
   bool rounds_seam = false;  // what stands there now rounds the corner in which it does
   double noise_mm = 0;

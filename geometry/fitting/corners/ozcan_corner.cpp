@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "geometry/basic/operations.h"
 #include "geometry/basic/rounding.h"
 #include "geometry/numeric/extrema.h"
 
@@ -58,6 +59,7 @@ struct Problem : OzcanProblem {
   [[nodiscard]] double cost(const std::vector<double>& v) const {
     const BesideLeg fourth = place(v);
     if (!goes_forward(fourth)) return std::numeric_limits<double>::infinity();
+    count_operations(200);
     const BsplineCurve curve = ozcan_curve(frame, leg, fourth);
     if (measure_deviation(curve, frame, kind) > tolerance) {
       return std::numeric_limits<double>::infinity();

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "geometry/basic/operations.h"
 #include "geometry/basic/rounding.h"
 #include "postproc/machine/machine_fields.h"
 #include "postproc/machine/models/jerk_motion.h"
@@ -112,6 +113,7 @@ TimedChain::TimedChain(std::span<const TimedPiece> pieces, const Machine& machin
 double TimedChain::time(const gcode::PathControl& path, ChainEnd end, WorthAPlan worth) const {
   const StretchChain chain = stretches_of(moving_, machine_, path, end, WithPositions::kNo);
   const double time = profile_time(chain.stretches, chain.rules);
+  geometry::count_operations(10 * moving_.size());
   const double slow = chain.in_slow_curves;
   if (slow < worth.seconds * static_cast<double>(moving_.size()) || slow > worth.share * time ||
       !takes_a_plan(chain, time)) {

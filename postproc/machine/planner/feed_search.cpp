@@ -5,6 +5,7 @@
 #include <span>
 #include <utility>
 
+#include "geometry/basic/operations.h"
 #include "geometry/numeric/banded_cholesky.h"
 
 namespace batten::postproc {
@@ -209,6 +210,7 @@ void Search::add_springs() {
 
 // Goes these shares of the last step and makes the system of the next.
 void Search::assemble(double primal, double dual) {
+  geometry::count_operations(4 * places_.size());
   matrix_.reset(problem_.unknowns);
   for (auto* sums : {&base_, &center_, &unexplained_}) sums->assign(problem_.unknowns, 0);
   gap_ = excess_ = 0;

@@ -123,6 +123,11 @@ class TubeWays {
     find_samples();
   }
 
+  // About so many operations take the plans (geometry/basic/operations.h).
+  [[nodiscard]] double operations() const {
+    return kTube.operations * std::min(starts_.back(), kTube.planned);
+  }
+
   [[nodiscard]] std::optional<TubeCurve> fastest() {
     const std::span methods(geometry::kFewMethods);
     solve_samples(methods.first(1));
@@ -306,7 +311,9 @@ std::optional<TubeCurve> tube_curve(std::span<const Point3> run, const CurveRequ
   const auto tube = tube_fit(run, request);
   if (!tube) return std::nullopt;
   if (std::ranges::all_of(tube->sections, &TubeSection::straight)) return TubeCurve{tube->path};
-  return TubeWays(*tube, request).fastest();
+  TubeWays ways(*tube, request);
+  if (ways.operations() > request.operations) return std::nullopt;
+  return ways.fastest();
 }
 
 }  // namespace batten::postproc

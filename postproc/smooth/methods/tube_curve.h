@@ -30,6 +30,7 @@ struct TubeTuning {
   // others are not tried. It is nearly as fast as the
   // best of them.
   double behind = 1.1;
+  double operations = 5000;  // of the plans of all curves, about, for each of their nodes
 };
 inline constexpr TubeTuning kTube;
 
@@ -49,8 +50,9 @@ struct TubeCurve {
 // samples, evenly along it: the work for the plans does not grow with the run, and only the parts
 // that a sample is of are solved by all methods. Linear cost.
 //
-// Nothing as with naseath_curve, and where the machine limits neither acceleration nor jerk; and of
-// a run that is planned as a whole where it is far behind `request.rival` (s from rest to rest).
+// Nothing as with naseath_curve, and where the machine limits neither acceleration nor jerk; where
+// the plans would take more than `request.operations`; and of a run that is planned as a whole
+// where it is far behind `request.rival` (s from rest to rest).
 [[nodiscard]] std::optional<TubeCurve> tube_curve(std::span<const geometry::Point3> run,
                                                   const CurveRequest& request);
 

@@ -41,6 +41,7 @@ struct RunContext {
   // alone is asked.
   std::optional<Times> of_neighbours = {};
   double may_win = 0;  // s: by going on from lead or into tail faster than the run does
+  std::size_t moves_of_program = 0;  // see RunBudget; 0: there is no other run
 
   [[nodiscard]] bool is_piece() const { return !of_neighbours && (!lead.empty() || !tail.empty()); }
 };
@@ -72,8 +73,8 @@ struct SmoothedRun {
   RunFacts facts;
   std::vector<Candidate> candidates;  // none where `reason` says why
   std::string_view reason;
-  bool left_out = false;     // there are more that the choice would not prefer to the best of these
-  bool passed_over = false;  // one that could not gain was not made
+  bool left_out = false;  // there are more that the choice would not prefer to the best of these
+  bool is_cut_short = false;  // its budget (RunBudget) was spent before all was tried
 };
 
 // Which candidates are made. Others are of use where the proof of the chosen one fails. Of a run
@@ -113,5 +114,11 @@ struct RunTask {  // all must live as long
   CandidateScope scope = CandidateScope::kToChoose;
   RunMemo* memo = nullptr;
 };
+
+// Whether its work is bounded (RunBudget): not of who asks for all that there is, or for a method
+// by name.
+[[nodiscard]] inline bool is_bounded(const RunTask& task) {
+  return task.scope != CandidateScope::kAll && task.options.method == Method::kBest;
+}
 
 }  // namespace batten::postproc

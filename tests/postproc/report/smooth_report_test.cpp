@@ -211,7 +211,7 @@ TEST_F(SmoothReports, HaveTheirFieldsInAFixedOrder) {
             "first_line last_line points tolerance_mm status reason method methods form blocks_in "
             "computed_blocks "
             "blocks_out "
-            "deviation_mm proved noise_mm coarse_part max_curvature_before max_curvature_after "
+            "deviation_mm proved cut_short noise_mm coarse_part max_curvature_before max_curvature_after "
             "bytes_in bytes_out "
             "path_before path_after time_before_s time_after_s ");
 }
