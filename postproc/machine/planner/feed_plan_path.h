@@ -42,7 +42,8 @@ struct KinematicPathLimits {
 inline constexpr double kPlanDensity = 6;
 
 // For plans that are compared, or stand for the time of a control: good to a permille, and 0.3 %
-// too slow at most where bends are slow. Between nodes limits may be exceeded by some percent.
+// too slow at most where bends are slow. Between nodes limits may be exceeded, by some percent, and
+// among hard corners by more for a millisecond.
 inline constexpr double kQuickPlanDensity = 2;
 
 // Of each piece of a path its own, or one for all of them.

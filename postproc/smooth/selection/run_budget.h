@@ -12,6 +12,7 @@ namespace batten::postproc {
 
 struct BudgetTuning {
   std::uint64_t per_move = 15'000;         // some 0.9 ms
+  std::size_t least_moves = 50;            // that a run counts as
   std::uint64_t per_program = 30'000'000;  // at least, for all moves of its runs: some 1.8 s
 };
 inline constexpr BudgetTuning kBudget;
@@ -24,7 +25,8 @@ class RunBudget {
       : end_(geometry::operations_so_far() + operations(moves, of_program)) {}
 
   [[nodiscard]] static std::uint64_t operations(std::size_t moves, std::size_t of_program) {
-    return moves * std::max(kBudget.per_move, kBudget.per_program / std::max(moves, of_program));
+    const std::uint64_t share = kBudget.per_program * moves / std::max(moves, of_program);
+    return std::max(kBudget.per_move * std::max(moves, kBudget.least_moves), share);
   }
 
   // Then nothing else is begun.

@@ -113,6 +113,7 @@ TEST(RunBudget, LeavesPlentyForUsualRuns) {
 
 TEST(RunBudget, IsThatOfTheMovesOrAShareOfTheProgram) {
   EXPECT_EQ(RunBudget::operations(300, 1'000'000), 300 * kBudget.per_move);
+  EXPECT_EQ(RunBudget::operations(3, 1'000'000), kBudget.least_moves * kBudget.per_move);
   EXPECT_EQ(RunBudget::operations(10, 100), kBudget.per_program / 10);
   EXPECT_EQ(RunBudget::operations(10, 0), kBudget.per_program) << "alone";
 }
