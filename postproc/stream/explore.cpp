@@ -6,6 +6,7 @@
 #include <span>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include "postproc/runs/run_path.h"
 #include "postproc/smooth/forms/provenance.h"
@@ -28,27 +29,64 @@ void add_to(ExploredFigures& sum, const ExploredFigures& part) {
   for (std::size_t i = 0; i < sum.at_feeds.size(); ++i) sum.at_feeds[i] += part.at_feeds[i];
 }
 
-// From rest to rest; where runs were cut from a long one only the ratios count.
-void add_times_at_feeds(const PartRuns& runs, const Machine& machine, ExploredFigures& sum) {
-  const auto add = [&](const std::vector<TimedPiece>& chain, const gcode::PathControl& path) {
-    for (std::size_t i = 0; i < sum.at_feeds.size(); ++i) {
-      sum.at_feeds[i] += TimedChain(chain, machine, kExploredFeeds[i]).time(path);
+// Times of the runs of a part at each of kExploredFeeds, from rest to rest; where runs were cut
+// from a long one only the ratios count. Settings often choose the same: each chain is timed once.
+class TimesAtFeeds {
+ public:
+  explicit TimesAtFeeds(const Machine& machine) : machine_(machine) {}
+
+  void add(const PartRuns& runs, ExploredFigures& sum) {
+    const std::span works(runs.works);
+    for (std::size_t i = 0; i < works.size();) {
+      const CutRun* cut = works[i].cut_run ? &runs.cut_runs[*works[i].cut_run] : nullptr;
+      const std::span pieces = works.subspan(i, cut != nullptr ? cut->pieces : 1);
+      const Seconds& seconds = times_of(runs, pieces, cut);
+      for (std::size_t k = 0; k < seconds.size(); ++k) sum.at_feeds[k] += seconds[k];
+      i += pieces.size();
     }
-  };
-  for (std::size_t i = 0; i < runs.works.size(); ++i) {
-    const RunState& work = runs.works[i];
-    const CutRun* cut = work.cut_run ? &runs.cut_runs[*work.cut_run] : nullptr;
-    if (cut != nullptr && cut->first_work != i) continue;
-    if (cut != nullptr) {
-      add(chain_with(*cut, std::span(runs.works).subspan(i, cut->pieces)), cut->path);
-      continue;
-    }
-    const Run& run = std::get<Run>(runs.sections[work.section].content);
-    add(work.chosen() != nullptr ? work.chosen()->moves
-                                 : timed_pieces(run, 0, run.points.size() - 1),
-        work.context.after.path);
   }
-}
+
+ private:
+  using Seconds = decltype(ExploredFigures::at_feeds);
+
+  const Seconds& times_of(const PartRuns& runs, std::span<const RunState> pieces,
+                          const CutRun* cut) {
+    const auto [found, is_new] = known_.try_emplace(key_of(runs, pieces));
+    if (!is_new) return found->second;
+    const RunState& work = pieces.front();
+    std::vector<TimedPiece> chain;
+    if (cut != nullptr) {
+      chain = chain_with(*cut, pieces);
+    } else if (work.chosen() != nullptr) {
+      chain = work.chosen()->moves;
+    } else {
+      const Run& run = std::get<Run>(runs.sections[work.section].content);
+      chain = timed_pieces(run, 0, run.points.size() - 1);
+    }
+    const gcode::PathControl& path = cut != nullptr ? cut->path : work.context.after.path;
+    for (std::size_t k = 0; k < kExploredFeeds.size(); ++k) {
+      found->second[k] = TimedChain(chain, machine_, kExploredFeeds[k]).time(path);
+    }
+    return found->second;
+  }
+
+  // Where the pieces begin, and the figures of what was chosen for them: no two candidates of one
+  // run have all of them the same.
+  static std::vector<double> key_of(const PartRuns& runs, std::span<const RunState> pieces) {
+    std::vector<double> key;
+    for (const RunState& piece : pieces) {
+      key.push_back(runs.sections[piece.section].first_block);
+      const Candidate* chosen = piece.chosen();
+      if (chosen == nullptr) continue;
+      const Figures& of = chosen->figures;
+      key.insert(key.end(), {of.times.programmed, of.blocks, of.bytes, of.distance, of.roughness});
+    }
+    return key;
+  }
+
+  const Machine& machine_;
+  std::map<std::vector<double>, Seconds> known_;
+};
 
 // The settings of one tolerance, looked at part by part.
 class ToleranceSurvey {
@@ -98,6 +136,7 @@ class ToleranceSurvey {
   bool look_at(const ProgramPart& part, const PartRuns& runs, const ProgressCallback& tell) {
     if (runs.works.empty()) return true;
     RunMemos memos;
+    TimesAtFeeds times(*settings_.front().machine);
     std::vector<std::pair<ExploredFigures, ExploredFigures>> all;
     for (const SmoothOptions& options : settings_) {
       PartRuns own = runs;
@@ -113,8 +152,8 @@ class ToleranceSurvey {
         add_to(after, {run.time_after_s, static_cast<double>(run.blocks_out) - blocks_in,
                        run.path_after, run.status == RunStatus::kRewritten});
       }
-      add_times_at_feeds(runs, *options.machine, before);
-      add_times_at_feeds(own, *options.machine, after);
+      times.add(runs, before);
+      times.add(own, after);
     }
     const std::scoped_lock lock(adding_);
     parts_.insert_or_assign(part.program.blocks.front().line, std::move(all));
