@@ -87,7 +87,8 @@ class CurveForms {
         is_first_(given.is_first),
         one_sided_(setting.task.options.side != geometry::Side::kBoth),
         pieces_(curve_.path.curve),
-        result_(result) {}
+        result_(result),
+        first_(result.candidates.size()) {}
 
   void add() {
     const Form wanted = task_.options.output;
@@ -97,12 +98,9 @@ class CurveForms {
       make_best();
       if (has_form(Form::kCurves)) return;
     }
-    // Lines of fewest links are the dearest, chords the cheapest of all.
-    const bool are_dear = linearize_of(task_.options) == Linearize::kMinLink;
-    if (wanted != Form::kArcs && !are_dear) offer_lines();
     if (wanted != Form::kLines) offer_arcs();
     if (wanted != Form::kLines && is_fair && is_first_) offer_arc_splines();
-    if (wanted != Form::kArcs && are_dear) offer_lines();
+    if (wanted != Form::kArcs) offer_lines();
     make_best();
   }
 
@@ -117,10 +115,10 @@ class CurveForms {
                                [&](const Candidate& c) { return c.form == form; });
   }
 
-  // Whether there is a candidate, of the form that is asked for by name.
+  // Whether there is a candidate of this curve, or one of the form that is asked for by name.
   [[nodiscard]] bool has_one() const {
     const Form wanted = task_.options.output;
-    return wanted == Form::kAuto ? !result_.candidates.empty() : has_form(wanted);
+    return wanted == Form::kAuto ? result_.candidates.size() > first_ : has_form(wanted);
   }
 
   // Where the digits of the target bound how near is worth trying, two of them are the same.
@@ -352,6 +350,7 @@ class CurveForms {
       one_sided_;  // the run must not be cut on one side: what is written follows the curve closely
   geometry::MarkedPieces pieces_;
   SmoothedRun& result_;
+  std::size_t first_;  // of the candidates, those of this curve
   std::vector<Offer> offers_;
 };
 

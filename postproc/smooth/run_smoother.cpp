@@ -149,12 +149,16 @@ class RunSmoother {
   }
 
   void try_curve(Method method, const CurveRequest& request) {
-    if (is_bounded(task_) && budget_.is_spent()) {
-      result_.is_cut_short = result_.left_out = true;
-      return;
-    }
+    if (is_out_of_budget()) return;
     const auto curve = curve_by(method, request);
     if (curve) add_candidates_of(*curve);
+  }
+
+  // Whether less is left than what is to be begun takes at least; then the result says so.
+  bool is_out_of_budget(double operations = 1) {
+    if (!is_bounded(task_) || static_cast<double>(budget_.left()) >= operations) return false;
+    result_.is_cut_short = result_.left_out = true;
+    return true;
   }
 
   // Where it leaves some of the tolerance.
@@ -218,10 +222,8 @@ class RunSmoother {
     if (!tube_is_worth_trying(run().points.size(), least, best_time())) return;
     // What several settings share does not depend on what one of them has found.
     const bool all = task_.scope == CandidateScope::kAll || task_.memo != nullptr;
-    if (!all) {
-      request.rival = best_time();
-      request.operations = static_cast<double>(budget_.left());
-    }
+    if (!all) request.rival = best_time();
+    if (is_out_of_budget(tube_operations(fair_->curve, request))) return;
     try_curve(Method::kTube, request);
   }
 
@@ -331,9 +333,7 @@ WorthAPlan worth_a_plan(const Run& run, const RunContext& context, const SmoothO
       cutting_time(timed_pieces(run, 0, run.points.size() - 1), machine, context.after.path);
   const double least =
       least_time(run, tolerance, machine, context.after.path, options.tolerance_kind);
-  return tube_is_worth_trying(run.points.size(), least, alone)
-             ? WorthAPlan{.share = kAmongForms.share}
-             : kAmongForms;
+  return tube_is_worth_trying(run.points.size(), least, alone) ? WorthAPlan{} : kAmongForms;
 }
 
 }  // namespace

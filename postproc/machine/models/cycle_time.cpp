@@ -115,8 +115,7 @@ double TimedChain::time(const gcode::PathControl& path, ChainEnd end, WorthAPlan
   const double time = profile_time(chain.stretches, chain.rules);
   geometry::count_operations(10 * moving_.size());
   const double slow = chain.in_slow_curves;
-  if (slow < worth.seconds * static_cast<double>(moving_.size()) || slow > worth.share * time ||
-      !takes_a_plan(chain, time)) {
+  if (slow < worth.seconds * static_cast<double>(moving_.size()) || !takes_a_plan(chain, time)) {
     return time;
   }
   return PlannedMotion(moving_, machine_, FeedPlanner::kJerk, path, kQuickPlanDensity).duration();

@@ -74,11 +74,10 @@ enum class WithPositions { kNo, kYes };
 // Which chains are worth the work of a plan, some 0.1 ms a piece.
 struct WorthAPlan {
   double seconds = 0;  // of slow bends for each piece, at least
-  double share = 1;    // of the time, at most: with more there is a cusp
 };
 
 // Of the many forms that are compared; and no chain at all.
-inline constexpr WorthAPlan kAmongForms = {.seconds = 0.005, .share = 0.97};
+inline constexpr WorthAPlan kAmongForms = {.seconds = 0.005};
 inline constexpr WorthAPlan kNoPlan = {.seconds = std::numeric_limits<double>::infinity()};
 
 // The time of one chain of pieces under several settings of its control: what they have in common

@@ -25,14 +25,13 @@ struct CurveRequest {
   double keep_corner_angle = 3.2;    // radians: vertices that turn more stay as they are
   double keep_found_corner = 3.2;    // radians: see geometry::FairOptions
   geometry::KinematicLimits limits;  // what the machine can do at the greatest feed of the run
-  double jerk = std::numeric_limits<double>::infinity();        // mm/s^3, see geometry::FairOptions
-  double scatter = 0;                                           // mm, see geometry::FairOptions
-  bool accurate = false;                                        // see geometry::FairOptions
-  bool near = true;                                             // the same
-  double guo_lambda = 0;                                        // see geometry::GuoOptions
-  geometry::Seam seam = geometry::Seam::kCorner;                // of a closed run
-  double rival = std::numeric_limits<double>::infinity();       // s, see tube_curve
-  double operations = std::numeric_limits<double>::infinity();  // at most, see tube_curve
+  double jerk = std::numeric_limits<double>::infinity();   // mm/s^3, see geometry::FairOptions
+  double scatter = 0;                                      // mm, see geometry::FairOptions
+  bool accurate = false;                                   // see geometry::FairOptions
+  bool near = true;                                        // the same
+  double guo_lambda = 0;                                   // see geometry::GuoOptions
+  geometry::Seam seam = geometry::Seam::kCorner;           // of a closed run
+  double rival = std::numeric_limits<double>::infinity();  // s, see tube_curve
 };
 
 [[nodiscard]] double greatest_feed(const Run& run);  // mm/min

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <iterator>
 #include <limits>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -121,11 +122,6 @@ class TubeWays {
     longest_line_ = limits_.feed * s_curve_change(limits_.feed, along);
     find_nodes();
     find_samples();
-  }
-
-  // About so many operations take the plans (geometry/basic/operations.h).
-  [[nodiscard]] double operations() const {
-    return kTube.operations * std::min(starts_.back(), kTube.planned);
   }
 
   [[nodiscard]] std::optional<TubeCurve> fastest() {
@@ -311,9 +307,13 @@ std::optional<TubeCurve> tube_curve(std::span<const Point3> run, const CurveRequ
   const auto tube = tube_fit(run, request);
   if (!tube) return std::nullopt;
   if (std::ranges::all_of(tube->sections, &TubeSection::straight)) return TubeCurve{tube->path};
-  TubeWays ways(*tube, request);
-  if (ways.operations() > request.operations) return std::nullopt;
-  return ways.fastest();
+  return TubeWays(*tube, request).fastest();
+}
+
+double tube_operations(const BsplineCurve& fair, const CurveRequest& request) {
+  const std::vector<double> nodes =
+      plan_nodes(geometry::beziers_of(fair), plan_limits(request), kTube.density);
+  return kTube.operations * std::min(std::reduce(nodes.begin(), nodes.end()), kTube.planned);
 }
 
 }  // namespace batten::postproc

@@ -50,10 +50,13 @@ struct TubeCurve {
 // samples, evenly along it: the work for the plans does not grow with the run, and only the parts
 // that a sample is of are solved by all methods. Linear cost.
 //
-// Nothing as with naseath_curve, and where the machine limits neither acceleration nor jerk; where
-// the plans would take more than `request.operations`; and of a run that is planned as a whole
-// where it is far behind `request.rival` (s from rest to rest).
+// Nothing as with naseath_curve, and where the machine limits neither acceleration nor jerk; and of
+// a run that is planned as a whole where it is far behind `request.rival` (s from rest to rest).
 [[nodiscard]] std::optional<TubeCurve> tube_curve(std::span<const geometry::Point3> run,
                                                   const CurveRequest& request);
+
+// About how many operations (geometry/basic/operations.h) its plans take for a run along `fair`.
+[[nodiscard]] double tube_operations(const geometry::BsplineCurve& fair,
+                                     const CurveRequest& request);
 
 }  // namespace batten::postproc

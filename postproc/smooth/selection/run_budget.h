@@ -1,5 +1,5 @@
 // How much the search for a run's candidates may compute, so that no run, whatever its shape, takes
-// long: a number of operations (geometry/basic/operations.h) for each of its blocks.
+// long: a number of operations (geometry/basic/operations.h) for each of its moves.
 #pragma once
 
 #include <algorithm>

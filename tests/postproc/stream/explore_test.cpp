@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "postproc/stream/pipeline.h"
+#include "tests/support/interpreted.h"
 #include "tests/support/places.h"
 #include "tests/support/scratch_folder.h"
 #include "tests/support/wavy_programs.h"
@@ -84,6 +85,30 @@ TEST(Explore, FasterFeedsTakeNoLongerAndNoLessThanTheirShare) {
         EXPECT_GE(figures->at_feeds[i] * kExploredFeeds[i], figures->time_s * (1 - 1e-9));
       }
     }
+  }
+}
+
+std::string with_feed(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  return at == std::string::npos ? text : text.replace(at, from.size(), to);
+}
+
+// What settings choose alike is timed once at each feed, and nothing else.
+TEST(Explore, TellsForAFasterFeedWhatTheTextTakesWithIt) {
+  const std::string slow = with_feed(std::string(sample("butterfly").text()), "F6000", "F2000");
+  const Exploration found = explore_program({"butterfly", slow}, settings_of("linuxcnc", {0.01}));
+  const auto seconds_of = [](const std::string& text, const SmoothOptions& options) {
+    const tests::Interpreted read(text);
+    return time_of(read.program, read.read, options).seconds;
+  };
+  for (const ExploredRow& row : found.rows) {
+    if (row.options.output != Form::kAuto || row.options.prefer == Prefer::kSize) continue;
+    SCOPED_TRACE(name_of(row.options.prefer));
+    const std::string text = smooth_program({"butterfly", slow}, row.options).text;
+    const double before = seconds_of(with_feed(slow, "F2000", "F8000"), row.options);
+    EXPECT_NEAR(row.before.at_feeds[3], before, 5e-3 * before);
+    const double after = seconds_of(with_feed(text, "F2000", "F8000"), row.options);
+    EXPECT_NEAR(row.after.at_feeds[3], after, 5e-3 * after);
   }
 }
 

@@ -194,10 +194,6 @@ TEST(JerkEstimateOfForms, IsAPlanWhereThatIsWorthItsWork) {
   EXPECT_EQ(timed(small, kAmongForms).programmed, timed(small, kNoPlan).programmed);
   EXPECT_LT(timed(small, {}).programmed, 0.99 * timed(small, kNoPlan).programmed);
   EXPECT_EQ(timed(chain, kAmongForms).programmed, plan);
-  const geometry::CubicBezier cusp{
-      {Point3(0, 0, 0), Point3(10, 10, 0), Point3(0, 10, 0), Point3(10, 0, 0)}};
-  const std::vector<TimedPiece> sharp(1, {cusp, 6000});
-  EXPECT_LT(timed(sharp, {}).programmed, 0.1 * timed(sharp, kAmongForms).programmed);
 }
 
 // Without a limit on jerk a joint goes by the speed of the axes alone, as it did.

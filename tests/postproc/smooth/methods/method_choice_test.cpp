@@ -13,6 +13,7 @@
 #include "tests/support/machine_limits.h"
 #include "tests/support/method_cases.h"
 #include "tests/support/naseath_cases.h"
+#include "tests/support/one_run.h"
 #include "tests/support/wavy_programs.h"
 
 namespace batten::postproc {
@@ -202,18 +203,22 @@ Machine machine_with_jerk(double velocity, double acceleration, double jerk) {
   return machine;
 }
 
-// One of Naseath's curves at 24 m/min on his machine, which limits its jerk, or on the same
-// without.
-SmoothResult best_of_case(const std::string& name, double jerk, int samples = 8) {
-  const Machine machine = machine_with_jerk(400, 4000, jerk);
+// One of Naseath's curves, at 24 m/min.
+std::string program_of_case(const std::string& name, int samples) {
   const geometry::BsplineCurve curve = geometry::curve_of_case(name);
   std::vector<geometry::Point3> points;
   for (const auto& sample : geometry::parameter_samples(curve, samples)) {
     points.push_back(curve.point_at(sample.parameter));
   }
+  return program_through(points, 24000);
+}
+
+// On his machine, which limits its jerk, or on the same without.
+SmoothResult best_of_case(const std::string& name, double jerk, int samples = 8) {
+  const Machine machine = machine_with_jerk(400, 4000, jerk);
   SmoothOptions options = options_with(Method::kBest, "siemens", 0.125);
   options.machine = &machine;
-  return smoothed(program_through(points, 24000), options);
+  return smoothed(program_of_case(name, samples), options);
 }
 
 // A noisy line; and a smooth curve, in which by the speeds that bends could be held at tube and
@@ -230,6 +235,25 @@ TEST(BestMethod, TakesTheTubeWhereJerkIsLimitedAndItsPlanIsFaster) {
     ASSERT_NE(fair, run.methods.end());
     EXPECT_LT(run.time_after_s, part * fair->time_s);
   }
+}
+
+// Its plans take more than all that so short a run has in a long program; that is told.
+TEST(BestMethod, LeavesOutATubeThatTakesMoreThanTheBudget) {
+  const Machine machine = machine_with_jerk(400, 4000, 20000);
+  SmoothOptions options = options_with(Method::kBest, "siemens", 0.125);
+  options.machine = &machine;
+  const OneRun run(program_of_case("tc5b", 3));
+  const auto has_tube = [](const SmoothedRun& smoothed) {
+    return std::ranges::any_of(smoothed.candidates,
+                               [](const Candidate& c) { return c.method == "tube"; });
+  };
+  RunContext context = run.context();
+  const SmoothedRun alone = smooth_run(run.run(), context, options);
+  EXPECT_TRUE(has_tube(alone));
+  context.moves_of_program = 1'000'000;
+  const SmoothedRun in_long_program = smooth_run(run.run(), context, options);
+  EXPECT_FALSE(has_tube(in_long_program));
+  EXPECT_TRUE(in_long_program.is_cut_short);
 }
 
 // Six corners of 90 degrees on the machine of Ozcan 2018: rounded by two pieces each, with lines

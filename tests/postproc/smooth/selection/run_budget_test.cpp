@@ -111,6 +111,30 @@ TEST(RunBudget, LeavesPlentyForUsualRuns) {
   }
 }
 
+// A zigzag beside a circle of many chords.
+std::string zigzag_in_a_long_program() {
+  std::string text = program_of(costly_shapes()[0].points);
+  text.erase(text.find("M2"));
+  for (int i = 0; i <= 2500; ++i) {
+    const double angle = 2 * geometry::kPi * i / 2500;
+    text += fmt::format("G1 X{:.3f} Y{:.3f}\n", 80 + 40 * std::cos(angle), 40 * std::sin(angle));
+  }
+  return text + "M2\n";
+}
+
+TEST(RunBudget, IsToldOfWhereItIsSpentAndTheSameForAnyThreads) {
+  SmoothOptions options = options_for("grbl");
+  options.threads = 1;
+  const SmoothResult alone = smoothed(zigzag_in_a_long_program(), options);
+  options.threads = 3;
+  EXPECT_EQ(smoothed(zigzag_in_a_long_program(), options).text, alone.text);
+  const auto notes =
+      std::ranges::count(alone.diagnostics, "search-cut-short", &gcode::Diagnostic::id);
+  EXPECT_EQ(notes, 1);
+  EXPECT_EQ(std::ranges::count(alone.runs, true, &RunReport::is_cut_short), 1);
+  EXPECT_TRUE(alone.runs.front().is_cut_short);
+}
+
 TEST(RunBudget, IsThatOfTheMovesOrAShareOfTheProgram) {
   EXPECT_EQ(RunBudget::operations(300, 1'000'000), 300 * kBudget.per_move);
   EXPECT_EQ(RunBudget::operations(3, 1'000'000), kBudget.least_moves * kBudget.per_move);

@@ -53,6 +53,29 @@ TEST(RunTimes, FollowTheOverrideAsFarAsTheMachineCan) {
   }
 }
 
+// A machine with jerk hardly slows down for a bend that is as tight as a cusp and shorter than it
+// needs to; speeds that the bend itself could be held at would take hundreds of times as long.
+TEST(RunTimes, AreThoseOfAPlanHoweverTightABendIs) {
+  const Machine& machine = *find_machine("high-speed");
+  std::vector<TimedPiece> chain;
+  for (int i = 0; i < 3; ++i) {
+    const double x = 10 * i;
+    for (const auto& [from, to] : {std::pair{0.0, 0.5}, {0.5, 1.0}}) {
+      TimedPiece piece;
+      piece.piece = geometry::sub_piece(
+          geometry::CubicBezier{
+              {{x, 0, 0}, {x + 9.999, 10, 0}, {x + 0.001, 10, 0}, {x + 10, 0, 0}}},
+          from, to);
+      piece.feed = 6000;
+      chain.push_back(piece);
+    }
+  }
+  const double planned = cutting_time(chain, machine, gcode::PathMode::kBlending);
+  EXPECT_LT(planned, 5);
+  EXPECT_NEAR(times_of(chain, machine, gcode::PathMode::kBlending).programmed, planned,
+              1e-9 * planned);
+}
+
 // Steps of a staircase, each shorter than what a control that may leave them rounds off.
 std::string stairs_after(const std::string& path_words) {
   std::string text = head("G21") + path_words + "\nG1 F2500\n";
