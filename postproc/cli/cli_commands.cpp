@@ -665,6 +665,21 @@ void check_time_outputs(const TimeCommand& command, Arguments& in) {
   }
 }
 
+void read_override_into(TimeCommand& command, Arguments& in) {
+  const auto text = in.given.value("feed-override");
+  if (!text) return;
+  const std::optional<double> percent = read_decimal("feed-override", *text, in);
+  if (percent && !(*percent > 0)) {
+    in.complain("--feed-override: '{}', expected percent above 0, such as 150", *text);
+  }
+  if (percent) command.feed_override = *percent / 100;
+  for (const char* other : {"report", "open", "bound"}) {
+    if (in.given.has(other)) {
+      in.complain("--feed-override: not with --{}, which goes by the programmed feeds", other);
+    }
+  }
+}
+
 TimeCommand time_command(Arguments& in) {
   TimeCommand command;
   command.input = file_at(in, 0);
@@ -691,6 +706,7 @@ TimeCommand time_command(Arguments& in) {
   static constexpr std::array kPlanners = {
       choice(FeedPlanner::kControl), choice(FeedPlanner::kJerk), choice(FeedPlanner::kSCurve)};
   choose(command.planner, "planner", std::span<const Choice<FeedPlanner>>(kPlanners), in);
+  read_override_into(command, in);
   command.bound = in.given.has("bound");
   std::optional<double> inch;
   command.tolerance_mm = tolerance_in(in.given.value("tolerance"), in, inch);

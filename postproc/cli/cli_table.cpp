@@ -228,6 +228,8 @@ std::vector<OptionRow> time_rows() {
              "what moves the axes: the machine's control; the least time within the limits of each "
              "axis, jerk among them; or S-curves from bend to bend [Naseath 2007]",
              "control"),
+      option("feed-override", kValue, "PERCENT",
+             "as with the feed override of the control at so many percent; rapids stay", "100"),
       option("bound", kFlag, "",
              "tell how much time is left to win in the runs, and where; not of moves under exact "
              "stop, which are kept"),
@@ -364,6 +366,7 @@ std::vector<CommandRow> make_command_rows() {
        "  batten time part.nc --machine router.toml --profile part.csv\n"
        "  batten time part.nc --machine router --bound --tolerance 0.01\n"
        "  batten time part.nc --machine high-speed --planner jerk\n"
+       "  batten time part.nc --machine mill --feed-override 150\n"
        "The profile has a row for each millisecond: t_s, line, x_mm, y_mm, z_mm,\n"
        "feed_mm_per_min, then acceleration (mm/s2) and jerk (mm/s3) of X, Y and Z.\n"
        "Times are those of the control's model; what the text does not tell is listed. With or\n"

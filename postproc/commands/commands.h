@@ -139,6 +139,7 @@ struct TimeCommand : ReadingCommand {
   std::shared_ptr<const Machine> machine;  // required
   std::optional<geometry::Point3> start;   // mm: where the tool is before the program
   FeedPlanner planner = FeedPlanner::kControl;
+  double feed_override = 1;            // see StepOptions
   bool bound = false;                  // tells what is left to win
   std::optional<double> tolerance_mm;  // within which a path may be for that
   std::string profile_file;

@@ -97,13 +97,15 @@ int run(const TimeCommand& command) {
   if (gcode::has_error(found)) return static_cast<int>(ExitCode::kNotUnderstood);
 
   const StepOptions options = {.dwell_unit = dwell_unit_of(command.target, *command.machine),
-                               .start = command.start};
+                               .start = command.start,
+                               .feed_override = command.feed_override};
   const ProgramTime time =
       time_program(program, meaning, *command.machine, options, command.planner);
   std::optional<TimeBounds> bounds;
   if (command.bound) bounds = time_bounds(program, meaning, *command.machine, command.tolerance_mm);
-  const TimeReport report{program,           *command.machine, time,   found,
-                          command.own_words, called.files,     bounds, command.planner};
+  const TimeReport report{program, *command.machine,  time,
+                          found,   command.own_words, called.files,
+                          bounds,  command.planner,   command.feed_override};
   const bool standard_output_taken =
       command.json_file == "-" || command.profile_file == "-" || command.page.file == "-";
   if (!standard_output_taken) {

@@ -107,6 +107,7 @@ struct SmoothOptions {
   // Runs of one shape are smoothed once in a part (postproc/smooth/repeated_runs.h). Each by itself
   // comes out the same to within the rounding of what is computed.
   bool once_for_repeats = true;
+  std::vector<double> timed_feeds;  // the program is timed with its feeds so many times, too
   bool quick = false;  // less effort for few moves, all forms from the same curves: for a survey
 };
 

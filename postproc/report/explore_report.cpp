@@ -94,11 +94,12 @@ std::string untried_curves(const Exploration& found) {
 }
 
 Json json_of(const ExploredFigures& figures) {
-  return {{"time_s", figures.time_s},
-          {"blocks", figures.blocks},
-          {"distance_mm", figures.path.distance_mm},
-          {"roughness", figures.path.roughness},
-          {"at_feeds_s", figures.at_feeds}};
+  Json json = {{"time_s", figures.time_s},
+               {"blocks", figures.blocks},
+               {"distance_mm", figures.path.distance_mm},
+               {"roughness", figures.path.roughness}};
+  if (!figures.at_feeds.empty()) json["at_feeds_s"] = figures.at_feeds;
+  return json;
 }
 
 Json json_of(const ExploredRow& row) {

@@ -190,7 +190,8 @@ Json time_json(const TimeReport& report) {
                  {"bytes", report.program.source.text().size()},
                  {"blocks", report.program.blocks.size()}}},
                {"machine", report.machine.name},
-               {"planner", name_of(report.planner)}};
+               {"planner", name_of(report.planner)},
+               {"feed_override", report.feed_override}};
   json.update(parts_json(time.seconds));
   json["cuts"] = time.counts.cuts;
   json["rapids"] = time.counts.rapids;
@@ -214,9 +215,11 @@ Json time_json(const TimeReport& report) {
 
 std::string time_text(const TimeReport& report) {
   const bool planned = report.planner != FeedPlanner::kControl;
+  const bool overridden = report.feed_override != 1;
   std::string lines =
-      fmt::format("{} on {}{}: {}\n", report.program.source.name(), report.machine.name,
+      fmt::format("{} on {}{}{}: {}\n", report.program.source.name(), report.machine.name,
                   planned ? fmt::format(", planner {}", name_of(report.planner)) : "",
+                  overridden ? fmt::format(", feeds at {:g} %", 100 * report.feed_override) : "",
                   seconds_text(report.time.seconds.sum()));
   add_parts(report.time, lines);
   add_tools(report.time, lines);

@@ -26,6 +26,7 @@ struct TimeReport {
   const std::vector<CalledFile>& called;    // programs that it calls, whose time is not in it
   const std::optional<TimeBounds>& bounds;  // where they are asked for
   FeedPlanner planner = FeedPlanner::kControl;
+  double feed_override = 1;
 };
 
 // For people:

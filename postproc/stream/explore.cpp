@@ -26,67 +26,7 @@ void add_to(ExploredFigures& sum, const ExploredFigures& part) {
   sum.blocks += part.blocks;
   sum.path += part.path;
   sum.rewritten = sum.rewritten || part.rewritten;
-  for (std::size_t i = 0; i < sum.at_feeds.size(); ++i) sum.at_feeds[i] += part.at_feeds[i];
 }
-
-// Times of the runs of a part at each of kExploredFeeds, from rest to rest; where runs were cut
-// from a long one only the ratios count. Settings often choose the same: each chain is timed once.
-class TimesAtFeeds {
- public:
-  explicit TimesAtFeeds(const Machine& machine) : machine_(machine) {}
-
-  void add(const PartRuns& runs, ExploredFigures& sum) {
-    const std::span works(runs.works);
-    for (std::size_t i = 0; i < works.size();) {
-      const CutRun* cut = works[i].cut_run ? &runs.cut_runs[*works[i].cut_run] : nullptr;
-      const std::span pieces = works.subspan(i, cut != nullptr ? cut->pieces : 1);
-      const Seconds& seconds = times_of(runs, pieces, cut);
-      for (std::size_t k = 0; k < seconds.size(); ++k) sum.at_feeds[k] += seconds[k];
-      i += pieces.size();
-    }
-  }
-
- private:
-  using Seconds = decltype(ExploredFigures::at_feeds);
-
-  const Seconds& times_of(const PartRuns& runs, std::span<const RunState> pieces,
-                          const CutRun* cut) {
-    const auto [found, is_new] = known_.try_emplace(key_of(runs, pieces));
-    if (!is_new) return found->second;
-    const RunState& work = pieces.front();
-    std::vector<TimedPiece> chain;
-    if (cut != nullptr) {
-      chain = chain_with(*cut, pieces);
-    } else if (work.chosen() != nullptr) {
-      chain = work.chosen()->moves;
-    } else {
-      const Run& run = std::get<Run>(runs.sections[work.section].content);
-      chain = timed_pieces(run, 0, run.points.size() - 1);
-    }
-    const gcode::PathControl& path = cut != nullptr ? cut->path : work.context.after.path;
-    for (std::size_t k = 0; k < kExploredFeeds.size(); ++k) {
-      found->second[k] = TimedChain(chain, machine_, kExploredFeeds[k]).time(path);
-    }
-    return found->second;
-  }
-
-  // Where the pieces begin, and the figures of what was chosen for them: no two candidates of one
-  // run have all of them the same.
-  static std::vector<double> key_of(const PartRuns& runs, std::span<const RunState> pieces) {
-    std::vector<double> key;
-    for (const RunState& piece : pieces) {
-      key.push_back(runs.sections[piece.section].first_block);
-      const Candidate* chosen = piece.chosen();
-      if (chosen == nullptr) continue;
-      const Figures& of = chosen->figures;
-      key.insert(key.end(), {of.times.programmed, of.blocks, of.bytes, of.distance, of.roughness});
-    }
-    return key;
-  }
-
-  const Machine& machine_;
-  std::map<std::vector<double>, Seconds> known_;
-};
 
 // The settings of one tolerance, looked at part by part.
 class ToleranceSurvey {
@@ -123,8 +63,6 @@ class ToleranceSurvey {
       const double elsewhere = read.program_before.seconds - row.before.time_s;
       for (ExploredFigures* figures : {&row.before, &row.after}) {
         figures->blocks += static_cast<double>(read.blocks_in);
-        const double part = figures->at_feeds[0] > 0 ? figures->time_s / figures->at_feeds[0] : 0;
-        for (double& time : figures->at_feeds) time = part * time + elsewhere;
         figures->time_s += elsewhere;
       }
       rows.push_back(std::move(row));
@@ -136,7 +74,6 @@ class ToleranceSurvey {
   bool look_at(const ProgramPart& part, const PartRuns& runs, const ProgressCallback& tell) {
     if (runs.works.empty()) return true;
     RunMemos memos;
-    TimesAtFeeds times(*settings_.front().machine);
     std::vector<std::pair<ExploredFigures, ExploredFigures>> all;
     for (const SmoothOptions& options : settings_) {
       PartRuns own = runs;
@@ -147,13 +84,12 @@ class ToleranceSurvey {
       if (!smooth_runs(part, options, tell_share, own, &memos)) return false;
       auto& [before, after] = all.emplace_back();
       for (const RunReport& run : report_runs(part, own, options.tolerance_mm, {}, false)) {
+        const double more =
+            static_cast<double>(run.blocks_out) - static_cast<double>(run.blocks_in);
         add_to(before, {run.time_before_s, 0, run.path_before});
-        const auto blocks_in = static_cast<double>(run.blocks_in);
-        add_to(after, {run.time_after_s, static_cast<double>(run.blocks_out) - blocks_in,
-                       run.path_after, run.status == RunStatus::kRewritten});
+        add_to(after,
+               {run.time_after_s, more, run.path_after, run.status == RunStatus::kRewritten});
       }
-      times.add(runs, before);
-      times.add(own, after);
     }
     const std::scoped_lock lock(adding_);
     parts_.insert_or_assign(part.program.blocks.front().line, std::move(all));
@@ -169,14 +105,13 @@ class ToleranceSurvey {
 // Of a text that could not be proved nothing is written.
 void set_proved(const SmoothResult& result, ExploredRow& row) {
   row.proved = true;
+  row.before.at_feeds = result.program_before.at_feeds;
   if (!result.proved) {
     row.after = row.before;
     return;
   }
-  const double time = result.program_after.seconds;
-  const double part = row.after.time_s > 0 ? time / row.after.time_s : 1;
-  for (double& at_feed : row.after.at_feeds) at_feed *= part;
-  row.after.time_s = time;
+  row.after.time_s = result.program_after.seconds;
+  row.after.at_feeds = result.program_after.at_feeds;
   row.after.blocks = static_cast<double>(result.blocks_out);
   row.after.path = result.path_after;
 }
@@ -245,7 +180,9 @@ Exploration explore_program(const gcode::SourceText& source,
       found.recommended = best;
       break;
     }
-    SmoothResult result = smooth_program(source, row.options, nowhere, share_of_all);
+    SmoothOptions options = row.options;
+    options.timed_feeds.assign(kExploredFeeds.begin(), kExploredFeeds.end());
+    SmoothResult result = smooth_program(source, options, nowhere, share_of_all);
     if (!result.understood) return {std::move(result), {}, {}};
     set_proved(result, row);
   }

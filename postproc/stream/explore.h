@@ -15,11 +15,11 @@ namespace batten::postproc {
 inline constexpr std::array<double, 4> kExploredFeeds = {1, 1.5, 2, 4};
 
 struct ExploredFigures {
-  double time_s = 0;                                     // of the program
-  double blocks = 0;                                     // of the program
-  PathFigures path;                                      // of the runs that may be rewritten
-  bool rewritten = false;                                // any of these
-  std::array<double, kExploredFeeds.size()> at_feeds{};  // s, with other feeds in its runs
+  double time_s = 0;                  // of the program
+  double blocks = 0;                  // of the program
+  PathFigures path;                   // of the runs that may be rewritten
+  bool rewritten = false;             // any of these
+  std::vector<double> at_feeds = {};  // s of the program, of what is proved alone
 
   [[nodiscard]] std::array<double, 4> four() const {
     return {time_s, blocks, path.distance_mm, path.roughness};

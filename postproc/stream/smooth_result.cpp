@@ -228,17 +228,35 @@ TimeFigures& TimeFigures::operator+=(const TimeFigures& other) {
   return *this;
 }
 
-StepOptions step_options_of(const SmoothOptions& options) {
-  return {.dwell_unit = dwell_unit_of(options.target, *options.machine)};
+ProgramTimers::ProgramTimers(const SmoothOptions& options, std::optional<bool> has_m6) {
+  StepOptions steps{.dwell_unit = dwell_unit_of(options.target, *options.machine),
+                    .has_m6 = has_m6};
+  timers_.reserve(1 + options.timed_feeds.size());
+  timers_.emplace_back(*options.machine, steps);
+  for (const double feed : options.timed_feeds) {
+    steps.feed_override = feed;
+    timers_.emplace_back(*options.machine, steps);
+  }
 }
 
-TimeFigures figures_of(const ProgramTime& time) {
-  return {time.seconds.sum(), time.seconds.cutting, time.below_half_feed};
+void ProgramTimers::add(const gcode::Program& part, const gcode::Interpretation& meaning) {
+  for (ProgramTimer& timer : timers_) timer.add(part, meaning);
+}
+
+TimeFigures ProgramTimers::finish() {
+  const ProgramTime time = timers_.front().finish();
+  TimeFigures figures{time.seconds.sum(), time.seconds.cutting, time.below_half_feed, {}};
+  for (ProgramTimer& timer : std::span(timers_).subspan(1)) {
+    figures.at_feeds.push_back(timer.finish().seconds.sum());
+  }
+  return figures;
 }
 
 TimeFigures time_of(const gcode::Program& program, const gcode::Interpretation& meaning,
                     const SmoothOptions& options) {
-  return figures_of(time_program(program, meaning, *options.machine, step_options_of(options)));
+  ProgramTimers timers(options, has_m6(program));
+  timers.add(program, meaning);
+  return timers.finish();
 }
 
 std::vector<RunReport> report_runs(const ProgramPart& part, const PartRuns& runs,

@@ -59,8 +59,8 @@ struct RunReport {
   bool chords_for_steps = false;  // see OutputPlan
   bool arcs_as_chords = false;
   bool is_cut_short = false;  // see SmoothedRun
-  bool closed = false;       // it ends where it begins; of a cut run its first part
-  bool rounds_seam = false;  // what stands there now rounds the corner in which it does
+  bool closed = false;        // it ends where it begins; of a cut run its first part
+  bool rounds_seam = false;   // what stands there now rounds the corner in which it does
   double noise_mm = 0;
   double coarse_part = 0;           // of its vertices, whose chords are coarser than the tolerance
   double max_curvature_before = 0;  // 1/mm, circle through three neighbouring vertices
@@ -95,14 +95,26 @@ void add_stated(const std::vector<StatedFrom>& part, std::vector<StatedFrom>& al
 struct TimeFigures {
   double seconds = 0;
   double cutting_s = 0;
-  double slow_s = 0;  // of the cutting time: below half of the programmed feed
+  double slow_s = 0;                  // of the cutting time: below half of the programmed feed
+  std::vector<double> at_feeds = {};  // seconds at each of SmoothOptions::timed_feeds
 
   [[nodiscard]] double slow_share() const { return cutting_s > 0 ? slow_s / cutting_s : 0; }
   TimeFigures& operator+=(const TimeFigures& other);
 };
 
-[[nodiscard]] StepOptions step_options_of(const SmoothOptions& options);
-[[nodiscard]] TimeFigures figures_of(const ProgramTime& time);
+// Of a program that is read part by part. A copy goes on from there.
+class ProgramTimers {
+ public:
+  // `has_m6`: see StepOptions.
+  ProgramTimers(const SmoothOptions& options, std::optional<bool> has_m6);
+
+  void add(const gcode::Program& part, const gcode::Interpretation& meaning);
+  [[nodiscard]] TimeFigures finish();  // after the last part
+
+ private:
+  std::vector<ProgramTimer> timers_;  // as programmed, and at each of the other feeds
+};
+
 [[nodiscard]] TimeFigures time_of(const gcode::Program& program,
                                   const gcode::Interpretation& meaning,
                                   const SmoothOptions& options);

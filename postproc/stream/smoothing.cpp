@@ -275,9 +275,7 @@ class Smoothing {
     known_ = known_at_begin();
     guess_.emplace();
     crossings_.reset();
-    StepOptions steps = step_options_of(options_);
-    steps.has_m6 = facts_.has_m6;
-    old_time_.emplace(*options_.machine, steps);
+    old_time_.emplace(options_, facts_.has_m6);
     new_time_.reset();
     outcome_ = WindowOutcome::kDone;
     progress_.begin(facts_.windows.size());
@@ -383,8 +381,8 @@ class Smoothing {
 
   SmoothResult finished() {
     SmoothResult& result = collected_->result;
-    result.program_before = figures_of(old_time_->finish());
-    result.program_after = new_time_ ? figures_of(new_time_->finish()) : result.program_before;
+    result.program_before = old_time_->finish();
+    result.program_after = new_time_ ? new_time_->finish() : result.program_before;
     return collected_->finish();
   }
 
@@ -402,8 +400,8 @@ class Smoothing {
   PartSums sums_;
   std::optional<StartGuess> guess_;
   std::optional<PartCrossings> crossings_;
-  std::optional<ProgramTimer> old_time_;
-  std::optional<ProgramTimer> new_time_;
+  std::optional<ProgramTimers> old_time_;
+  std::optional<ProgramTimers> new_time_;
   std::optional<CollectedResult> collected_;
 };
 

@@ -43,6 +43,27 @@ TEST_F(TimeCommandLine, SaysWhereTheTimeGoes) {
   }
 }
 
+TEST_F(TimeCommandLine, TellsTheTimeWithTheFeedOverride) {
+  folder_.put("slow.nc", "G21 G90\nG1 X50 F600\nG0 X0\nM2\n");
+  folder_.put("fast.nc", "G21 G90\nG1 X50 F900\nG0 X0\nM2\n");
+  const std::string rest = ".nc --machine mill --from 0,0,0 --json -";
+  const auto at_once = nlohmann::json::parse(folder_.batten("time fast" + rest).out);
+  const auto overridden =
+      nlohmann::json::parse(folder_.batten("time slow" + rest + " --feed-override 150").out);
+  EXPECT_EQ(overridden.at("time_s"), at_once.at("time_s"));
+  EXPECT_EQ(overridden.at("feed_override"), 1.5);
+  const std::string text =
+      folder_.batten("time slow.nc --machine mill --from 0,0,0 --feed-override 150").out;
+  EXPECT_TRUE(contains(text, "slow.nc on mill, feeds at 150 %:")) << text;
+  for (const char* wrong : {"--feed-override 0", "--feed-override fast",
+                            "--feed-override 150 --bound", "--feed-override 150 --report x.html"}) {
+    const ProcessResult refused =
+        folder_.batten("time slow.nc --machine mill " + std::string(wrong));
+    EXPECT_EQ(refused.exit_code, 1) << wrong;
+    EXPECT_TRUE(contains(refused.err, "--feed-override")) << refused.err;
+  }
+}
+
 TEST_F(TimeCommandLine, WritesJsonWhosePartsSumToTheWhole) {
   const ProcessResult result = expect_exit(time("--machine mill --from 0,0,0 --json -"), 0);
   const auto json = nlohmann::json::parse(result.out);

@@ -368,7 +368,7 @@ class StepWork {
     if (!words.has_any("ABC") || words.has_any("XYZ")) return;
     const auto feed = state().feed;
     if (state().feed_mode == gcode::FeedMode::kInverseTime && feed && *feed > 0) {
-      return add_wait(StepKind::kRotary, 60 / *feed);
+      return add_wait(StepKind::kRotary, 60 / (*feed * options_.feed_override));
     }
     note(not_timed::kRotaryAxis);
   }
@@ -415,11 +415,16 @@ class StepWork {
 
   // mm/min, at which a control without rapids runs them; 0: not known.
   [[nodiscard]] double last_feed() const {
-    return state().feed_mode == gcode::FeedMode::kPerMinute ? state().feed.value_or(0) : 0;
+    const bool is_known = state().feed_mode == gcode::FeedMode::kPerMinute;
+    return is_known ? options_.feed_override * state().feed.value_or(0) : 0;
   }
 
   // mm/min; 0 where it is not known.
   double feed_along(const geometry::PathPiece& piece) {
+    return options_.feed_override * programmed_feed(piece);
+  }
+
+  double programmed_feed(const geometry::PathPiece& piece) {
     const ModalState& s = state();
     if (!s.feed || !(*s.feed > 0)) {
       note(reason::kFeedUnknown);

@@ -69,6 +69,7 @@ struct ProgramStep {
 struct StepOptions {
   gcode::DwellUnit dwell_unit = gcode::DwellUnit::kByPoint;
   std::optional<geometry::Point3> start = {};  // mm: where the tool is before the program
+  double feed_override = 1;         // all feeds are so many times the programmed ones; rapids stay
   std::optional<bool> has_m6 = {};  // changes the tools; nothing: the text that is read says it
 };
 
