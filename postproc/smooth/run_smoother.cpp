@@ -251,18 +251,21 @@ class RunSmoother {
 
   // Whether a curve that rounds corners and spends the tolerance may be better: by its time; or,
   // where nothing is better so far, as the simpler one of fewer pieces: where few blocks are wanted
-  // or the target is told curves, or a form in far fewer blocks is slower.
+  // or the target is told curves, or a form in far fewer blocks is slower. Not where all forms are
+  // larger: what rounds corners is larger still.
   [[nodiscard]] bool is_worth_rounding() const {
     if (options().prefer == Prefer::kAccuracy) return false;
+    const bool simpler = wants_few_moves(options()) || options().target->curves_in_auto;
+    const Selection so_far = choose(result_, options());
+    if (so_far.reason == gcode::reason::kLarger && !simpler) return false;
     const double left = 1 - bounds_.least_time() / best_time();
     if (corner_part() >= kBounds.corners && left < kRun.left_at_corners &&
         !wants_few_moves(options())) {
       return false;
     }
     if (rounding_is_worth_trying(bounds_.least_time(), best_time())) return true;
-    const Selection so_far = choose(result_, options());
     if (!so_far.order.empty()) return false;
-    if (wants_few_moves(options()) || options().target->curves_in_auto) return true;
+    if (simpler) return true;
     const double few = kRun.far_fewer * result_.facts.scale.original.blocks;
     return so_far.reason == gcode::reason::kSlower &&
            std::ranges::any_of(result_.candidates,

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "gcode/state/reason.h"
 #include "postproc/smooth/selection/selection.h"
@@ -146,6 +147,25 @@ TEST(SmoothRun, TriesASimplerCurveWhereFarFewerBlocksAreSlower) {
   const Selection selection = choose(smoothed, options);
   ASSERT_FALSE(selection.order.empty()) << selection.reason;
   EXPECT_LE(smoothed.candidates[selection.order.front()].figures.blocks, 30);
+}
+
+// Forms of chords as coarse as the tolerance are larger than the program, and so would be those of
+// a curve that rounds corners, although a part of the time is left.
+TEST(SmoothRun, TriesNoOtherCurveWhereAllFormsAreLarger) {
+  SmoothOptions options = options_for("linuxcnc");
+  const OneRun run(
+      wave_program({.lines = 120, .step = 0.3, .height = 1.2, .length = 7.2, .feed = 6000}));
+  const auto curves_of = [&] {
+    std::set<double> curvatures;
+    for (const Candidate& each : run.smooth(options).candidates) {
+      curvatures.insert(each.max_curvature);
+    }
+    return curvatures.size();
+  };
+  EXPECT_EQ(choose(run.smooth(options), options).reason, gcode::reason::kLarger);
+  EXPECT_EQ(curves_of(), 1u);
+  options.prefer = Prefer::kSize;
+  EXPECT_GT(curves_of(), 1u);
 }
 
 // A zigzag of chords of 4 mm, each turned by 40 degrees: all of its vertices are corners.
