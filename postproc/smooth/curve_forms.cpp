@@ -68,11 +68,6 @@ struct Offer {
   double distance = 0;  // mm, rms from the path that was meant
   PlanOptions options;
   bool around_vertices = false;  // arcs
-
-  [[nodiscard]] bool is_same_as(const Offer& other) const {
-    return form == other.form && around_vertices == other.around_vertices &&
-           options == other.options;
-  }
 };
 
 class CurveForms {
@@ -119,11 +114,6 @@ class CurveForms {
   [[nodiscard]] bool has_one() const {
     const Form wanted = task_.options.output;
     return wanted == Form::kAuto ? result_.candidates.size() > first_ : has_form(wanted);
-  }
-
-  // Where the digits of the target bound how near is worth trying, two of them are the same.
-  void add_offer(Offer next) {
-    if (offers_.empty() || !offers_.back().is_same_as(next)) offers_.push_back(std::move(next));
   }
 
   // In the order in which they were offered, but for those that what there is then beats.
@@ -234,7 +224,7 @@ class CurveForms {
     for (const double deviation : std::span(all).last(few ? 1 : all.size())) {
       const PlanOptions plan = plan_within(deviation);
       if (!any_number && curves_expected(pieces_, plan) > most) continue;
-      add_offer({Form::kCurves, 0, 0, plan});
+      offers_.push_back({Form::kCurves, 0, 0, plan});
     }
   }
 
@@ -255,7 +245,7 @@ class CurveForms {
       const bool near = deviation < all.back() && !wants_few_moves(task_.options);
       if (near) plan.arc_effort = geometry::ArcEffort::kBrief;
       const double blocks = std::max(least, arcs_expected(task_.run, count, plan));
-      add_offer({Form::kArcs, blocks, farther ? kFormTuning.of_arcs * deviation : 0, plan});
+      offers_.push_back({Form::kArcs, blocks, farther ? kFormTuning.of_arcs * deviation : 0, plan});
     }
   }
 
@@ -272,7 +262,7 @@ class CurveForms {
       band.outside = whole - std::min(kFormTuning.for_control * whole,
                                       gcode::usual_chord_error(task_.options.target->chords));
       if (few) band.arc_effort = geometry::ArcEffort::kThorough;
-      add_offer({Form::kArcs, 0, 0, band, true});
+      offers_.push_back({Form::kArcs, 0, 0, band, true});
       if (task_.run.bends.empty()) return;
     }
   }
@@ -309,7 +299,7 @@ class CurveForms {
       blocks = std::min(blocks,
                         std::max(static_cast<double>(plan.most_moves), bends_.chords(highest, 0)));
     }
-    add_offer({Form::kLines, blocks, kFormTuning.of_height * height, plan});
+    offers_.push_back({Form::kLines, blocks, kFormTuning.of_height * height, plan});
   }
 
   // The farthest first, one by one: of nearer ones there are no fewer.
@@ -325,7 +315,7 @@ class CurveForms {
       if (!setting_.bounds.is_beaten(Form::kLines, fewest, 0)) {
         fewest = std::max(fewest, kFormTuning.counted_links * links_about(plan));
       }
-      add_offer({Form::kLines, fewest, 0, plan});
+      offers_.push_back({Form::kLines, fewest, 0, plan});
       make_best();
     }
   }

@@ -196,7 +196,7 @@ void BentSection::add_interval(std::size_t number, std::size_t from, SearchProbl
 
 // `found`: the unknowns of the whole section, up to where the window begins.
 SearchProblem BentSection::problem(const Window& window, const std::vector<double>& found) const {
-  const auto& [from, to, known] = window;
+  const auto& [from, to] = window;
   SearchProblem problem;
   problem.unknowns = 2 * (to - from) + 2;
   for (std::size_t k = from; k < to; ++k) add_interval(k, from, problem);
@@ -227,7 +227,7 @@ std::vector<double> BentSection::next_start(const Window& window,
 // The envelope, rounded off, behind what the window before found. It exceeds limits.
 std::vector<double> BentSection::rough_start(const Window& window, const SearchProblem& problem,
                                              const std::vector<double>& found) const {
-  const auto& [from, to, known] = window;
+  const auto& [from, to] = window;
   const std::span within = std::span(intervals).subspan(from, to - from);
   const double v0 = start.is_there() ? first.end_speed : section_.start.speed;
   std::vector<double> q = {from > 0 ? found[2 * from]
@@ -242,9 +242,6 @@ std::vector<double> BentSection::rough_start(const Window& window, const SearchP
   for (std::size_t i = 0; i < q.size(); ++i) rough[2 * i] = q[i];
   for (std::size_t i = 1; i + 1 < q.size(); ++i) {
     rough[2 * i + 1] = monotone_slope(within, rough, i);
-  }
-  if (known > from) {
-    std::copy(found.begin() + index_of(from), found.begin() + index_of(known + 1), rough.begin());
   }
   problem.tie(rough);
   return rough;
@@ -320,7 +317,6 @@ bool BentSection::search_in(const SectionWindows& size) {
     }
     std::ranges::copy(result.unknowns, found.begin() + index_of(window.from));
     if (window.to == n) break;
-    window.known = window.to - size.ahead / 2;
     window.from = slowest(found, window.from + size.kept / 2, after);
   }
   x = std::move(found);

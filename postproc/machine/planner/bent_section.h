@@ -46,11 +46,10 @@ class BentSection {
   std::size_t windows = 0;  // of the last search: one where it had to be in one piece
 
  private:
-  // Intervals from..to, and the nodes up to which the window before it found a start.
+  // Intervals from..to.
   struct Window {
     std::size_t from = 0;
     std::size_t to = 0;
-    std::size_t known = 0;
   };
 
   [[nodiscard]] SearchProblem problem(const Window& window, const std::vector<double>& found) const;

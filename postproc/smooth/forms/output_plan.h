@@ -81,9 +81,6 @@ struct PlanTuning {
   double periods = 1.1;         // block periods, with which the control just holds the feed
   // Arcs. There are few that the target refuses: too tight, too short.
   double arc_chords = 0.1;  // kept for chords in their place
-  // A brief search finds no more than so many times as many arcs as a thorough one: where these
-  // are more than there may be, there is none.
-  double brief_finds = 1.3;
   double spline_chords = 0.03;  // the same where they are refused after rounding only
   int newton_steps = 3;         // to the parameter of an end, from about the right one
   double reversal = 170 * geometry::kPi / 180;  // greater turns stay: see geometry::find_features

@@ -381,19 +381,6 @@ std::size_t most_pieces(const PlanOptions& options) {
   return std::min(options.most_arcs, kAnyNumber);
 }
 
-// Whether a brief search shows that a longer one finds too many arcs. `plan` makes one of no more
-// than so many pieces.
-template <typename Plan>
-bool takes_too_many(const Plan& plan, const PlanOptions& options) {
-  // With the target's own chords less of a band is left, and a brief search finds many more.
-  const bool says_little = options.target->chords.any() ||
-                           options.arc_effort == geometry::ArcEffort::kBrief ||
-                           options.most_arcs >= kAnyNumber;
-  if (says_little) return false;
-  const double found = std::floor(kPlans.brief_finds * static_cast<double>(options.most_arcs));
-  return !plan(geometry::ArcEffort::kBrief, static_cast<std::size_t>(found));
-}
-
 bool has_helix(const OutputPlan& plan) {
   return std::ranges::any_of(plan.moves, [](const auto& move) {
     const auto* arc = std::get_if<geometry::Arc>(&move.piece);
@@ -412,15 +399,10 @@ std::optional<OutputPlan> plan_arcs(const Run& run, const geometry::SmoothCurve&
     const auto flat = laid_flat(run, fair.curve, plane.normal, arc_grid(options));
     if (!flat) continue;
     flat_somewhere = true;
-    const auto with_effort = [&](geometry::ArcEffort effort, std::size_t at_most) {
-      geometry::ArcFitOptions fit = fit_options(options, plane, false);
-      fit.running = running_along(run, fair, fit.axis, options);
-      fit.effort = effort;
-      fit.at_most = at_most;
-      return plan_in(run, fair, *flat, nullptr, 0, fit, options);
-    };
-    if (takes_too_many(with_effort, options)) return std::nullopt;
-    if (auto plan = with_effort(options.arc_effort, most_pieces(options))) return plan;
+    geometry::ArcFitOptions fit = fit_options(options, plane, false);
+    fit.running = running_along(run, fair, fit.axis, options);
+    fit.at_most = most_pieces(options);
+    if (auto plan = plan_in(run, fair, *flat, nullptr, 0, fit, options)) return plan;
   }
   if (flat_somewhere) return std::nullopt;
   // In space the planes differ much: the rows of a raster along X are arcs in G18, and in G17 they
@@ -470,11 +452,10 @@ struct ArcSection {
 class ArcSplinePlanner {
  public:
   ArcSplinePlanner(const Run& run, const geometry::SmoothCurve& fair, const PlanOptions& options,
-                   const PlaneAxes& plane, geometry::ArcEffort effort)
+                   const PlaneAxes& plane)
       : run_(run),
         fair_(fair),
         options_(options),
-        effort_(effort),
         frame_(geometry::PlaneFrame::across(Vector3::Unit(plane.normal))),
         axis_(Vector3::Unit(plane.normal)),
         height_(run.points.front()[plane.normal]) {}
@@ -565,7 +546,7 @@ class ArcSplinePlanner {
     fit.min_radius = options_.target->min_radius;
     fit.max_radius = options_.target->max_radius;
     fit.grid = arc_grid(options_);
-    fit.effort = effort_;
+    fit.effort = options_.arc_effort;
     fit.running = running_beside(points, vertices);
     const geometry::Vector2 first = points[1] - points[0];
     fit.direction = std::atan2(first.y(), first.x());
@@ -609,7 +590,6 @@ class ArcSplinePlanner {
   const Run& run_;
   const geometry::SmoothCurve& fair_;
   const PlanOptions& options_;
-  geometry::ArcEffort effort_;
   geometry::PlaneFrame frame_;
   Vector3 axis_;
   double height_;  // of the run along the axis
@@ -622,13 +602,8 @@ std::optional<OutputPlan> plan_arc_spline(const Run& run, const geometry::Smooth
                                           const PlanOptions& options) {
   for (const PlaneAxes& plane : arc_planes(options)) {
     if (!lies_across(run, plane.normal)) continue;
-    const auto with_effort = [&](geometry::ArcEffort effort, std::size_t at_most) {
-      auto plan = ArcSplinePlanner(run, fair, options, plane, effort).plan();
-      if (plan && plan->moves.size() > at_most) plan.reset();
-      return plan;
-    };
-    if (takes_too_many(with_effort, options)) continue;
-    if (auto plan = with_effort(options.arc_effort, most_pieces(options))) return plan;
+    auto plan = ArcSplinePlanner(run, fair, options, plane).plan();
+    if (plan && plan->moves.size() <= options.most_arcs) return plan;
   }
   return std::nullopt;
 }

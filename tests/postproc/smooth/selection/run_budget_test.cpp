@@ -123,7 +123,8 @@ std::string zigzag_in_a_long_program() {
 }
 
 TEST(RunBudget, IsToldOfWhereItIsSpentAndTheSameForAnyThreads) {
-  SmoothOptions options = options_for("grbl");
+  SmoothOptions options = options_for("siemens");
+  options.machine = find_machine("high-speed");
   options.threads = 1;
   const SmoothResult alone = smoothed(zigzag_in_a_long_program(), options);
   options.threads = 3;
