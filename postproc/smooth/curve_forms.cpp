@@ -340,7 +340,7 @@ class CurveForms {
       one_sided_;  // the run must not be cut on one side: what is written follows the curve closely
   geometry::MarkedPieces pieces_;
   SmoothedRun& result_;
-  std::size_t first_;  // of the candidates, those of this curve
+  std::size_t first_;  // candidate of this curve
   std::vector<Offer> offers_;
 };
 

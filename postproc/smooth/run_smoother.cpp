@@ -251,8 +251,8 @@ class RunSmoother {
 
   // Whether a curve that rounds corners and spends the tolerance may be better: by its time; or,
   // where nothing is better so far, as the simpler one of fewer pieces: where few blocks are wanted
-  // or the target is told curves, or a form in far fewer blocks is slower. Not where all forms are
-  // larger: what rounds corners is larger still.
+  // or the target is told curves, or a form in far fewer blocks is slower. Not where the best
+  // form is larger than the program: what rounds corners is larger still.
   [[nodiscard]] bool is_worth_rounding() const {
     if (options().prefer == Prefer::kAccuracy) return false;
     const bool simpler = wants_few_moves(options()) || options().target->curves_in_auto;

@@ -5,10 +5,8 @@
 #include <mutex>
 #include <span>
 #include <utility>
-#include <variant>
 #include <vector>
 
-#include "postproc/runs/run_path.h"
 #include "postproc/smooth/forms/provenance.h"
 #include "postproc/smooth/part_runs.h"
 #include "postproc/smooth/selection/cost.h"

@@ -15,14 +15,13 @@
 #include "gcode/state/motion.h"
 #include "gcode/text/diagnostic.h"
 #include "gcode/text/program.h"
-#include "postproc/machine/program_time/program_time.h"
-#include "postproc/machine/program_time/program_time_steps.h"
 #include "postproc/proof/verification.h"
 #include "postproc/runs/kept_causes.h"
 #include "postproc/runs/section.h"
 #include "postproc/smooth/forms/output_plan.h"
 #include "postproc/smooth/part_runs.h"
 #include "postproc/smooth/selection/selection.h"
+#include "postproc/stream/program_timers.h"
 #include "postproc/system/exit_code.h"
 
 namespace batten::postproc {
@@ -90,34 +89,6 @@ struct StatedFrom {
 
 // Behind what the parts before it have said, but for what says the same again.
 void add_stated(const std::vector<StatedFrom>& part, std::vector<StatedFrom>& all);
-
-// Of a whole program, as `batten time` predicts it for the machine: rapids and waits count.
-struct TimeFigures {
-  double seconds = 0;
-  double cutting_s = 0;
-  double slow_s = 0;                  // of the cutting time: below half of the programmed feed
-  std::vector<double> at_feeds = {};  // seconds at each of SmoothOptions::timed_feeds
-
-  [[nodiscard]] double slow_share() const { return cutting_s > 0 ? slow_s / cutting_s : 0; }
-  TimeFigures& operator+=(const TimeFigures& other);
-};
-
-// Of a program that is read part by part. A copy goes on from there.
-class ProgramTimers {
- public:
-  // `has_m6`: see StepOptions.
-  ProgramTimers(const SmoothOptions& options, std::optional<bool> has_m6);
-
-  void add(const gcode::Program& part, const gcode::Interpretation& meaning);
-  [[nodiscard]] TimeFigures finish();  // after the last part
-
- private:
-  std::vector<ProgramTimer> timers_;  // as programmed, and at each of the other feeds
-};
-
-[[nodiscard]] TimeFigures time_of(const gcode::Program& program,
-                                  const gcode::Interpretation& meaning,
-                                  const SmoothOptions& options);
 
 struct SmoothResult {
   std::string text;  // the new program, where it was not handed on as it came; or empty

@@ -176,7 +176,6 @@ std::string zigzag_of_corners(int feed) {
   return text + tail();
 }
 
-// At 500 mm/min 4 % of the time are left to win, at 1000 mm/min 10 %.
 // Lines of fewest links are counted before they are made: not all that could be are laid.
 TEST(SmoothRun, LaysLinksOnlyWhereTheirCountMayWin) {
   SmoothOptions options = options_for("linuxcnc");
@@ -197,6 +196,7 @@ TEST(SmoothRun, LaysLinksOnlyWhereTheirCountMayWin) {
   EXPECT_GT(all, 26);
 }
 
+// At 500 mm/min 4 % of the time are left to win, at 1000 mm/min 10 %.
 TEST(SmoothRun, RoundsCornersByAnotherCurveWhereThatMayWinMuch) {
   SmoothOptions options = options_for("siemens");
   options.machine = find_machine("high-speed");

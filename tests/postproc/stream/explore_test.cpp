@@ -77,6 +77,7 @@ TEST(Explore, MarksWhatIsDominatedAndNothingElse) {
 // Where the tool runs at its feed, four times the feed takes a quarter of the time or more.
 TEST(Explore, FasterFeedsTakeNoLongerAndNoLessThanTheirShare) {
   const Exploration found = explore_program(sample("butterfly"), settings_of("linuxcnc", {0.01}));
+  ASSERT_TRUE(found.recommended);
   for (const ExploredRow& row : found.rows) {
     ASSERT_EQ(row.after.at_feeds.empty(), !row.proved);
     if (!row.proved) continue;

@@ -55,6 +55,39 @@ class EveryControl : public testing::TestWithParam<ControllerModel> {};
 
 INSTANTIATE_TEST_SUITE_P(ProgramTime, EveryControl, testing::ValuesIn(kModels), model_name);
 
+// A control without rapids runs them at the last feed.
+TEST(ProgramTime, OverridesWhatKlipperRunsItsRapidsAt) {
+  const Machine& machine = *find_machine("klipper-router");
+  StepOptions options = from_zero();
+  options.feed_override = 1.5;
+  const auto text_with = [](const char* feed) {
+    return std::string("G21 G90\nG1 X30 F") + feed + "\nG0 X0\nG1 Y30\n";
+  };
+  const double by_override = timed(text_with("400"), machine, options).seconds.sum();
+  EXPECT_NEAR(by_override, timed(text_with("600"), machine).seconds.sum(), 1e-9);
+}
+
+// In each mode of the feed, in arcs, drilling cycles and a turn of a rotary axis alone.
+TEST_P(EveryControl, TakesWithTheFeedOverrideWhatItTakesWithSuchFeeds) {
+  const Machine machine = machine_of(GetParam());
+  const std::vector<std::string> feeds = {"400", "1", "2.5", "0.2"};
+  const std::vector<std::string> overridden = {"600", "1.5", "3.75", "0.3"};
+  const auto text_with = [](const std::vector<std::string>& f) {
+    return "G21 G90 G94 G17 M3 S1000\nG1 X30 F" + f[0] + "\nG2 X50 Y20 I0 J20\nG0 X0 Y0\n" +
+           "G81 X5 Y5 Z-4 R1\nG80\nG93 G1 X20 F" + f[1] + "\nA90 F" + f[2] + "\nG95 G1 X50 F" +
+           f[3] + "\nG0 X0\nM2\n";
+  };
+  StepOptions options = from_zero();
+  options.feed_override = 1.5;
+  const ProgramTime by_override = timed(text_with(feeds), machine, options);
+  const ProgramTime by_feeds = timed(text_with(overridden), machine);
+  EXPECT_NEAR(by_override.seconds.sum(), by_feeds.seconds.sum(), 1e-9);
+  EXPECT_NEAR(by_override.seconds.rotary, by_feeds.seconds.rotary, 1e-12);
+  EXPECT_NEAR(by_override.cutting_at_feed, by_feeds.cutting_at_feed, 1e-9);
+  EXPECT_GT(by_override.seconds.rotary, 0);
+  EXPECT_LT(by_override.seconds.cutting, timed(text_with(feeds), machine).seconds.cutting);
+}
+
 // --- parts ---------------------------------------------------------------------------------
 
 // Rapid: 300 mm/s after .3 s and 45 mm: .3 + (300 - 90) / 300 + .3. Cut: 100 mm/s after .1 s and

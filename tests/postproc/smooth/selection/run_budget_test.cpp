@@ -11,6 +11,8 @@
 #include <vector>
 
 #include "postproc/machine/machine.h"
+#include "postproc/smooth/curve_forms.h"
+#include "postproc/smooth/methods/run_curve.h"
 #include "tests/support/one_run.h"
 #include "tests/support/wavy_programs.h"
 
@@ -141,6 +143,36 @@ TEST(RunBudget, IsThatOfTheMovesOrAShareOfTheProgram) {
   EXPECT_EQ(RunBudget::operations(3, 1'000'000), kBudget.least_moves * kBudget.per_move);
   EXPECT_EQ(RunBudget::operations(10, 100), kBudget.per_program / 10);
   EXPECT_EQ(RunBudget::operations(10, 0), kBudget.per_program) << "alone";
+}
+
+// What was just found is not for nothing: with nothing left, and another candidate there, one form
+// of it is made.
+TEST(RunBudget, LeavesOneFormOfACurveThatWasFound) {
+  const OneRun run(wave_program());
+  const SmoothOptions options = options_for("linuxcnc");
+  const RunContext context = run.context();
+  const RunTask task{run.run(), context, options};
+  const RunTimes times(context, *options.machine);
+  CurveRequest request;
+  request.tolerance = 0.005;
+  const auto curve = curve_of(Method::kFair, run.run().points, request);
+  ASSERT_TRUE(curve);
+  const CurvatureProfile bends(curve->path.curve);
+  const MeantPath meant(curve->path);
+  SmoothedRun result = run.smooth(options);
+  const auto cost = [&](const Candidate& c) {
+    return cost_of(c.figures, result.facts.scale, options.prefer);
+  };
+  std::ranges::sort(result.candidates, std::ranges::greater{}, cost);
+  result.candidates.resize(1);  // the dearest
+  result.candidates.front().text.text.clear();
+  const CandidateBounds bounds(task, result);
+  const RunBudget spent(1, 1'000'000);
+  geometry::count_operations(RunBudget::operations(1, 1'000'000));
+  ASSERT_TRUE(spent.is_spent());
+  add_forms({task, times, bounds, meant, spent}, {*curve, bends, 0.002, 0.004}, result);
+  EXPECT_EQ(result.candidates.size(), 2u);
+  EXPECT_TRUE(result.is_cut_short);
 }
 
 // One candidate of the form that was asked for is made with nothing left.
