@@ -11,6 +11,7 @@
 #include "gcode/curves/curve_format.h"
 #include "geometry/basic/operations.h"
 #include "postproc/runs/run_path.h"
+#include "postproc/smooth/forms/slow_parts.h"
 #include "postproc/smooth/selection/selection.h"
 
 namespace batten::postproc {
@@ -68,6 +69,13 @@ struct Offer {
   double distance = 0;  // mm, rms from the path that was meant
   PlanOptions options;
   bool around_vertices = false;  // arcs
+};
+
+// Of the offer that was made last: its plan, and what of it is slow.
+struct PlanOfLast {
+  std::optional<OutputPlan> plan;
+  std::vector<double> lost;
+  std::optional<std::vector<SlowPart>> slow;
 };
 
 class CurveForms {
@@ -131,10 +139,12 @@ class CurveForms {
       if (!all && offer.form == Form::kArcs && task_.memo == nullptr) {
         offer.options.most_arcs = setting_.bounds.most_blocks(offer.form, offer.distance);
       }
+      last_ = {};
       auto candidate = made(offer);
       const bool limited = offer.options.most_arcs < PlanOptions().most_arcs;
       if (candidate) {
         result_.candidates.push_back(std::move(*candidate));
+        put_run_where_slower(offer);
       } else if (limited) {
         result_.left_out = true;  // there may be more arcs than these
       }
@@ -142,7 +152,65 @@ class CurveForms {
     offers_.clear();
   }
 
-  [[nodiscard]] std::optional<Candidate> made(const Offer& offer) const {
+  [[nodiscard]] bool is_slower_than_run(const Candidate& candidate) const {
+    const CostScale& scale = facts().scale;
+    return is_slower(candidate.figures.times, scale.original.times, scale.period);
+  }
+
+  // The last candidate again, with the run where it is slower: everywhere, and only as much of it
+  // as it takes to be no slower. Not of a form that is asked for by name.
+  void put_run_where_slower(Offer offer) {
+    const Candidate& slower = result_.candidates.back();
+    if (offer.form == Form::kCurves || !task_.run.bends.empty()) return;
+    if (is_forced(offer.form, facts(), task_.options)) return;
+    if (!is_slower_than_run(slower) || !may_be_mended(slower, offer)) return;
+    slower_by_ = slower.figures.times.programmed - facts().scale.original.times.programmed;
+    for (const RunInPlace where : {RunInPlace::kEverywhere, RunInPlace::kWhereNeeded}) {
+      offer.options.run_in_place = where;
+      auto candidate = made(offer);
+      if (!candidate) return;
+      candidate->has_run_in_place = true;
+      const double time = candidate->figures.times.programmed;
+      const double before = facts().scale.original.times.programmed;
+      const bool fast = time <= before + facts().scale.period;
+      if (fast || where == RunInPlace::kEverywhere) {
+        result_.candidates.push_back(std::move(*candidate));
+      }
+      if (!fast) return;
+    }
+  }
+
+  // Whether it could be the best, lost it no time against the run.
+  bool may_be_mended(const Candidate& slower, const Offer& offer) {
+    if (task_.scope == CandidateScope::kAll || task_.memo != nullptr) return true;
+    const Figures& before = facts().scale.original;
+    Figures mended = slower.figures;
+    for (const double lost : lost_by_last_plan(offer)) {
+      mended.times.programmed -= std::max(lost, 0.0);
+    }
+    mended.blocks = std::min(mended.blocks, before.blocks);
+    mended.bytes = std::min(mended.bytes, before.bytes);
+    mended.distance = std::min(mended.distance, before.distance);
+    mended.roughness = std::min(mended.roughness, before.roughness);
+    return cost_of(mended, facts().scale, task_.options.prefer) <
+           cost_to_beat(result_, task_.options);
+  }
+
+  [[nodiscard]] const SlowParts& slow_parts() {
+    if (!slow_parts_) {
+      slow_parts_.emplace(task_.run, curve_.path, *task_.options.machine, task_.context.after.path);
+    }
+    return *slow_parts_;
+  }
+
+  // See SlowParts::lost. `offer`: the last one that there is a candidate of.
+  [[nodiscard]] const std::vector<double>& lost_by_last_plan(const Offer& offer) {
+    if (!last_.plan) last_.plan = plan_of(offer);  // the candidate was made for another setting
+    if (last_.lost.empty()) last_.lost = slow_parts().lost(last_.plan.value());
+    return last_.lost;
+  }
+
+  [[nodiscard]] std::optional<Candidate> made(const Offer& offer) {
     if (task_.memo == nullptr) return newly_made(offer);
     const RunMemo::PlanKey key{curve_.number, offer.form, offer.around_vertices, offer.options};
     return task_.memo->candidates.get(key, [&](std::size_t) {
@@ -152,17 +220,28 @@ class CurveForms {
     });
   }
 
-  [[nodiscard]] std::optional<OutputPlan> plan_of(const Offer& offer) const {
+  [[nodiscard]] std::optional<OutputPlan> plan_of(const Offer& offer) {
     const Run& run = task_.run;
+    if (offer.options.run_in_place != RunInPlace::kNowhere) return with_run_in(offer);
     if (offer.form == Form::kCurves) return plan_curves(run, curve_.path, offer.options);
     if (offer.form == Form::kLines) return plan_lines(run, curve_.path, pieces_, offer.options);
     return offer.around_vertices ? plan_arc_spline(run, curve_.path, offer.options)
                                  : plan_arcs(run, curve_.path, pieces_, bends_, offer.options);
   }
 
-  [[nodiscard]] std::optional<Candidate> newly_made(const Offer& offer) const {
+  [[nodiscard]] std::optional<OutputPlan> with_run_in(Offer offer) {
+    const RunInPlace where = std::exchange(offer.options.run_in_place, RunInPlace::kNowhere);
+    const std::vector<double>& lost = lost_by_last_plan(offer);
+    if (!last_.slow) last_.slow = slow_parts().find(*last_.plan, lost);
+    const bool all = where == RunInPlace::kEverywhere;
+    return slow_parts().with_run(*last_.plan,
+                                 all ? *last_.slow : enough_of(*last_.slow, slower_by_));
+  }
+
+  [[nodiscard]] std::optional<Candidate> newly_made(const Offer& offer) {
     const std::optional<OutputPlan> plan = plan_of(offer);
     if (!plan) return std::nullopt;
+    if (offer.options.run_in_place == RunInPlace::kNowhere) last_.plan = plan;
     auto candidate = make_candidate(task_, setting_.times, *plan, facts(), result_.candidates);
     if (!candidate) return std::nullopt;
     candidate->method = name_of(curve_.method);
@@ -342,6 +421,9 @@ class CurveForms {
   SmoothedRun& result_;
   std::size_t first_;  // candidate of this curve
   std::vector<Offer> offers_;
+  std::optional<SlowParts> slow_parts_;
+  PlanOfLast last_;
+  double slower_by_ = 0;  // s, its candidate
 };
 
 }  // namespace

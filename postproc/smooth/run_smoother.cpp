@@ -256,7 +256,7 @@ class RunSmoother {
   [[nodiscard]] bool is_worth_rounding() const {
     if (options().prefer == Prefer::kAccuracy) return false;
     const bool simpler = wants_few_moves(options()) || options().target->curves_in_auto;
-    const Selection so_far = choose(result_, options());
+    const Selection so_far = choose(result_, options(), Among::kFormsAlone);
     if (so_far.reason == gcode::reason::kLarger && !simpler) return false;
     const double left = 1 - bounds_.least_time() / best_time();
     if (corner_part() >= kBounds.corners && left < kRun.left_at_corners &&

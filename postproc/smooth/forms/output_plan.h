@@ -2,6 +2,7 @@
 // where the feed changes, with the run's comments.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -42,6 +43,9 @@ struct OutputPlan {
   bool arcs_as_chords = false;  // of ours, since the target's own would leave some arcs too far
 };
 
+// Where the run stands in place of lines and arcs (slow_parts.h).
+enum class RunInPlace : std::uint8_t { kNowhere, kWhereNeeded, kEverywhere };
+
 struct PlanOptions {
   const gcode::Control* target = nullptr;
   const Machine* machine = nullptr;
@@ -60,6 +64,7 @@ struct PlanOptions {
   std::size_t most_moves = 0;
   // minlink: about as many lines, made quickly for their number.
   bool counted = false;
+  RunInPlace run_in_place = RunInPlace::kNowhere;
   // More arcs than this are not looked for.
   std::size_t most_arcs = std::numeric_limits<std::size_t>::max();
   // mm, moves to run. Of lines, where max_deviation is not to be the same everywhere; of arcs, with
@@ -80,7 +85,7 @@ struct PlanTuning {
   int counted_gates = 8;        // along a link, where links are but counted
   double periods = 1.1;         // block periods, with which the control just holds the feed
   // Arcs. There are few that the target refuses: too tight, too short.
-  double arc_chords = 0.1;  // kept for chords in their place
+  double arc_chords = 0.1;      // kept for chords in their place
   double spline_chords = 0.03;  // the same where they are refused after rounding only
   int newton_steps = 3;         // to the parameter of an end, from about the right one
   double reversal = 170 * geometry::kPi / 180;  // greater turns stay: see geometry::find_features

@@ -58,7 +58,7 @@ std::string_view reason_against(const Figures& figures, Form form, const RunFact
   return costs_less ? std::string_view() : gcode::reason::kNoGain;
 }
 
-Selection choose(const SmoothedRun& run, const SmoothOptions& options) {
+Selection choose(const SmoothedRun& run, const SmoothOptions& options, Among among) {
   Selection selection;
   if (run.candidates.empty()) {
     selection.reason = run.reason;
@@ -68,6 +68,7 @@ Selection choose(const SmoothedRun& run, const SmoothOptions& options) {
   std::optional<Ranked> cheapest;  // of those that something speaks against
   for (std::size_t i = 0; i < run.candidates.size(); ++i) {
     const Candidate& c = run.candidates[i];
+    if (among == Among::kFormsAlone && c.has_run_in_place) continue;
     const Ranked here{is_forced(c.form, run.facts, options),
                       cost_of(c.figures, run.facts.scale, options.prefer), i};
     const std::string_view against = reason_against(c.figures, c.form, run.facts, options);

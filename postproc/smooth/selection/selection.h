@@ -28,7 +28,11 @@ struct Selection {
 [[nodiscard]] std::string_view reason_against(const Figures& figures, Form form,
                                               const RunFacts& facts, const SmoothOptions& options);
 
-[[nodiscard]] Selection choose(const SmoothedRun& run, const SmoothOptions& options);
+// Of all candidates, or without those that have the run in place of parts of a form.
+enum class Among { kAll, kFormsAlone };
+
+[[nodiscard]] Selection choose(const SmoothedRun& run, const SmoothOptions& options,
+                               Among among = Among::kAll);
 
 // What the candidates that were made would give under other options, and whether there is anything
 // to win. Of several runs: sums.

@@ -5,10 +5,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <string>
+#include <utility>
 
 #include "tests/support/one_run.h"
+#include "tests/support/wavy_programs.h"
 
 namespace batten::postproc {
 namespace {
@@ -42,6 +45,40 @@ TEST(CurveForms, AreMadeOnce) {
     ASSERT_GT(texts.size(), 3U);
     EXPECT_EQ(texts.size(), all.candidates.size());
   }
+}
+
+// A wing section (NACA 2412) of 60 mm, its vertices rounded to 0.001 mm.
+std::string wing_program(int count) {
+  const auto half = [](double x, double side) {
+    constexpr double kCamber = 0.02;
+    constexpr double kAt = 0.4;
+    const double thick = 0.6 * (0.2969 * std::sqrt(x) - 0.126 * x - 0.3516 * x * x +
+                                0.2843 * x * x * x - 0.1036 * x * x * x * x);
+    const double from = x < kAt ? 0 : 1 - 2 * kAt;
+    const double over = kCamber / std::pow(x < kAt ? kAt : 1 - kAt, 2);
+    const double middle = over * (from + 2 * kAt * x - x * x);
+    const double angle = std::atan(2 * over * (kAt - x));
+    return std::pair(60 * (x - side * thick * std::sin(angle)),
+                     60 * (middle + side * thick * std::cos(angle)));
+  };
+  std::string text = "G21 G90 G17 G64\nG0 X60 Y0 Z5\nG1 Z-1 F300\nF500\n";
+  for (int i = 1 - count; i <= count; ++i) {
+    const double x = 0.5 * (1 - std::cos(geometry::kPi * std::abs(i) / count));
+    const auto [px, py] = half(x, i < 0 ? 1 : -1);
+    text += fmt::format("G1 X{:.3f} Y{:.3f}\n", px, py);
+  }
+  return text + "G0 Z5\nM2\n";
+}
+
+// Arcs of its nose are slower than its chords by more than is allowed. Without the run there
+// it would be lines, as many as the chords.
+TEST(CurveForms, HaveTheRunWhereTheyAreSlower) {
+  SmoothOptions options = options_for("linuxcnc");
+  options.machine = find_machine("linuxcnc");
+  const SmoothResult result = smoothed(wing_program(40), options);
+  EXPECT_TRUE(result.proved);
+  EXPECT_LE(result.blocks_out, 0.5 * result.blocks_in);
+  EXPECT_LE(result.runs_after_s, (1 + kCost.longer) * result.runs_before_s);
 }
 
 }  // namespace

@@ -162,7 +162,8 @@ TEST(SmoothRun, TriesNoOtherCurveWhereAllFormsAreLarger) {
     }
     return curvatures.size();
   };
-  EXPECT_EQ(choose(run.smooth(options), options).reason, gcode::reason::kLarger);
+  EXPECT_EQ(choose(run.smooth(options), options, Among::kFormsAlone).reason,
+            gcode::reason::kLarger);
   EXPECT_EQ(curves_of(), 1u);
   options.prefer = Prefer::kSize;
   EXPECT_GT(curves_of(), 1u);
