@@ -771,30 +771,35 @@ void PartedFit::start(const FitProblem& problem) {
   borders_ = borders_of(problem);
   parts_.clear();
   parts_.reserve(borders_.size() - 1);
-  for (FitProblem& part : parted(problem)) parts_.emplace_back(std::move(part), max_refinements_);
-  assemble(problem);
-}
-
-void PartedFit::refit(const FitProblem& problem, double closest) {
-  std::vector<FitProblem> parts = parted(problem);
-  if (parts.empty()) return start(problem);
-  for (std::size_t i = 0; i < parts.size(); ++i) parts_[i].refit(std::move(parts[i]), closest);
-  assemble(problem);
-}
-
-// Nothing when a border is none any more.
-std::vector<FitProblem> PartedFit::parted(const FitProblem& problem) const {
-  std::vector<FitProblem> parts;
-  parts.reserve(borders_.size() - 1);
+  const std::vector<Pin> ends = ends_of_parts(problem);
   SplineCutter cutter(problem);
-  std::optional<Pin> from = border_at(problem, borders_.front());
-  for (std::size_t i = 1; i < borders_.size(); ++i) {
-    const std::optional<Pin> to = border_at(problem, borders_[i]);
-    if (!from || !to) return {};
-    parts.push_back(cutter.cut(*from, *to));
-    from = to;
+  for (std::size_t i = 1; i < ends.size(); ++i) {
+    parts_.emplace_back(cutter.cut(ends[i - 1], ends[i]), max_refinements_);
   }
-  return parts;
+  assemble(problem);
+}
+
+// Part by part: each gives its problem away for the new one.
+void PartedFit::refit(const FitProblem& problem, double closest) {
+  const std::vector<Pin> ends = ends_of_parts(problem);
+  if (ends.empty()) return start(problem);
+  SplineCutter cutter(problem);
+  for (std::size_t i = 1; i < ends.size(); ++i) {
+    parts_[i - 1].refit(cutter.cut(ends[i - 1], ends[i]), closest);
+  }
+  assemble(problem);
+}
+
+// At the borders; none when one of them is none any more.
+std::vector<Pin> PartedFit::ends_of_parts(const FitProblem& problem) const {
+  std::vector<Pin> ends;
+  ends.reserve(borders_.size());
+  for (const auto& border : borders_) {
+    const std::optional<Pin> end = border_at(problem, border);
+    if (!end) return {};
+    ends.push_back(*end);
+  }
+  return ends;
 }
 
 // The knots of the parts in a row, but for borders within a zone, and their control points.

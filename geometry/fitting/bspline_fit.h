@@ -57,7 +57,7 @@ class PartedFit {
 
  private:
   void start(const FitProblem& problem);
-  [[nodiscard]] std::vector<FitProblem> parted(const FitProblem& problem) const;
+  [[nodiscard]] std::vector<Pin> ends_of_parts(const FitProblem& problem) const;
   void assemble(const FitProblem& problem);
 
   int max_refinements_;
