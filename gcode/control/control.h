@@ -34,6 +34,7 @@ enum class CommentStyle : std::uint8_t {
 enum class ArcForm : std::uint8_t {
   kCenters,  // I J K
   kRadius,   // R, for arcs of less than half a turn
+  kShorter,  // R for arcs of less than a sixth of a turn, in fewer bytes; else I J K
 };
 
 // Which arcs a control refuses (gcode/controls/arc_rules.h). A rule that is named for a control was

@@ -23,6 +23,10 @@ std::vector<Control> linuxcnc_family() {
   // per word. In inches 6 decimals: 1.4e-4 rad.
   control.arc_ends = {5, 6};
 
+  // The path of an arc of less than a sixth of a turn is known better by R than by a centre, which
+  // takes a number more.
+  control.arc_form = ArcForm::kShorter;
+
   // A centre that is off by d turns the ends by d / r at the most: 7e-5 rad at r = 0.1 mm with the
   // decimals of the ends, so no more are needed.
   control.centers = control.arc_ends;

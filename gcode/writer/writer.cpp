@@ -234,7 +234,7 @@ std::optional<Writer::PrintedArc> Writer::print_arc(const geometry::Arc& arc) co
     return std::nullopt;
   }
   const double sweep = arc.axis[normal] > 0 ? arc.sweep : -arc.sweep;
-  if (control_.arc_form == ArcForm::kCenters) {
+  if (says_center(sweep)) {
     print_center(arc.center, sweep, printed);
   } else if (!print_radius(arc.center, sweep, printed)) {
     return std::nullopt;
@@ -242,6 +242,14 @@ std::optional<Writer::PrintedArc> Writer::print_arc(const geometry::Arc& arc) co
   if (std::abs(printed.arc.sweep - sweep) > std::numbers::pi) return std::nullopt;
   if (!arc_refusal(control_, printed.arc, state_.modal.units).empty()) return std::nullopt;
   return printed;
+}
+
+// R is well-conditioned far below half a turn: up to a sixth, a step of it moves the middle of the
+// arc by less than a sixth of one.
+bool Writer::says_center(double sweep) const {
+  constexpr double kSixth = std::numbers::pi / 3;
+  return control_.arc_form == ArcForm::kCenters ||
+         (control_.arc_form == ArcForm::kShorter && std::abs(sweep) > (1 - 1e-9) * kSixth);
 }
 
 bool Writer::absolute_centers() const {

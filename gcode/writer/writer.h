@@ -76,6 +76,7 @@ class Writer {
   // Whether it is known how arc centres are to be given, if at all; arc_to refuses every arc if
   // not.
   [[nodiscard]] bool centers_understood() const;
+  [[nodiscard]] bool says_center(double sweep) const;
 
   [[nodiscard]] const std::string& text() const { return text_; }
   [[nodiscard]] const WriterState& state() const { return state_; }

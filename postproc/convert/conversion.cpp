@@ -85,7 +85,7 @@ class BlockCheck {
       case 'I':
       case 'J':
       case 'K':
-        return target_.arc_form == gcode::ArcForm::kCenters ? "" : "may be no offset there";
+        return target_.arc_form == gcode::ArcForm::kRadius ? "may be no offset there" : "";
       default:
         common = kCommonLetters.find(word.letter) != std::string_view::npos;
     }

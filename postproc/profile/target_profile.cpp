@@ -43,7 +43,7 @@ constexpr WordsKey kWordsKeys[] = {
 
 constexpr std::array<std::string_view, 3> kPlaneNames = {"G17", "G18", "G19"};
 constexpr std::array<std::string_view, 3> kCommentNames = {"none", "parentheses", "semicolon"};
-constexpr std::array<std::string_view, 2> kArcForms = {"centres", "radius"};
+constexpr std::array<std::string_view, 3> kArcForms = {"centres", "radius", "shorter"};
 
 std::span<const std::string_view> names_of(CommentStyle) { return kCommentNames; }
 std::span<const std::string_view> names_of(ArcForm) { return kArcForms; }
@@ -107,7 +107,9 @@ constexpr ProfileKey kKeys[] = {
     {"arcs", "planes", "where arcs are taken; [] for none",
      [](Control& c) -> std::array<bool, 3>& { return c.planes; }},
     {"arcs", "helices", "arcs that rise", [](Control& c) -> bool& { return c.helices; }},
-    {"arcs", "words", "centres (I J K from the start) or radius (R)",
+    {"arcs", "words",
+     "centres (I J K from the start), radius (R), or shorter (R below a sixth of a turn, else I "
+     "J K)",
      [](Control& c) -> ArcForm& { return c.arc_form; }},
     {"arcs", "absolute-centres", "G90.1 and G91.1 are known",
      [](Control& c) -> bool& { return c.arc_distance_mode; }},

@@ -148,6 +148,18 @@ TEST(Writer, WritesArcsInTheirPlanes) {
   }
 }
 
+// LinuxCNC reads R and centres; a short arc has the shorter words.
+TEST(Writer, SaysShortArcsByTheirRadius) {
+  for (const auto& [sweep, expected] : {std::pair(kPi / 4, "G3 X7.0711 Y7.0711 R10.00002\n"),
+                                        std::pair(-kPi / 4, "G2 X7.0711 Y-7.0711 R10.00002\n"),
+                                        std::pair(kPi / 3, "G3 X5 Y8.6603 I-10.00001 J0.00004\n"),
+                                        std::pair(kPi / 2, "G3 X0 Y10 I-10\n")}) {
+    Writer out = writer_at("linuxcnc", cutting_in(Units::kMillimetre), Point3(10, 0, 0));
+    ASSERT_TRUE(out.arc_to(arc_round({10, 0, 0}, {0, 0, 0}, Vector3::UnitZ(), sweep), 1000));
+    EXPECT_EQ(out.text(), expected);
+  }
+}
+
 TEST(Writer, WritesAbsoluteCentersWhereTheProgramSaysSo) {
   ModalState modal = cutting_in(Units::kMillimetre);
   modal.arc_distance = DistanceMode::kAbsolute;

@@ -290,7 +290,7 @@ TEST(RunReports, SayWhereChordsAreCoarserThanTheTolerance) {
   for (int i = 201; i <= 800; ++i) text += fmt::format("X{} Y{:.4f}\n", i, std::sin(0.1 * i));
   text += tail();
   const auto coarse_part = [&text](double tolerance, Method method) {
-    SmoothOptions options = options_for("linuxcnc");
+    SmoothOptions options = options_for("grbl");
     options.tolerance_mm = tolerance;
     options.method = method;
     const SmoothResult result = smoothed(text, options);

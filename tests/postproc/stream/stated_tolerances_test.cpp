@@ -124,7 +124,7 @@ TEST(StatedTolerances, AreKeptByEachPartForItself) {
   const SmoothResult other = smoothed(text, one);
   ASSERT_TRUE(other.proved);
   EXPECT_TRUE(other.stated.empty());
-  EXPECT_GT(other.deviation_mm, 0.008);
+  EXPECT_GT(other.deviation_mm, 0.004);
   EXPECT_FALSE(verdict(text, other.text, 0.02).proved());
 }
 
