@@ -12,10 +12,10 @@ VARIABLE = re.compile(rb"#\s*(?:<[^>]*>|\d+)")
 ASSIGNED = re.compile(rb"(#\s*(?:<[^>]*>|\d+))\s*=")
 EXPRESSION = re.compile(rb"(?<=[XYZIJKRF])\s*(?:\[[^\]]*\]|[+-]?#\s*(?:<[^>]*>|\d+))", re.IGNORECASE)
 
-# Words of a line of a run: of straight moves, and those that only arcs have. New arcs have no R.
+# Words of a line of a run: of straight moves, and those that only arcs have.
 WORDS_OF_A_RUN = set(b"NGXYZF")
 WORDS_OF_ARCS = set(b"IJKR")
-WORDS_OF_NEW_LINES = WORDS_OF_A_RUN | set(b"IJK")
+WORDS_OF_NEW_LINES = WORDS_OF_A_RUN | WORDS_OF_ARCS
 
 # With them a line with I, J, K or R is an arc; a cycle or a scaling has other codes.
 CODES_OF_ARCS = {2, 3}
