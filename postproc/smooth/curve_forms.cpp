@@ -158,7 +158,7 @@ class CurveForms {
   }
 
   // The last candidate again, with the run where it is slower: everywhere, and only as much of it
-  // as it takes to be no slower. Not of a form that is asked for by name.
+  // as it takes; where it is no slower then. Not of a form that is asked for by name.
   void put_run_where_slower(Offer offer) {
     const Candidate& slower = result_.candidates.back();
     if (offer.form == Form::kCurves || !task_.run.bends.empty()) return;
@@ -172,11 +172,8 @@ class CurveForms {
       candidate->has_run_in_place = true;
       const double time = candidate->figures.times.programmed;
       const double before = facts().scale.original.times.programmed;
-      const bool fast = time <= before + facts().scale.period;
-      if (fast || where == RunInPlace::kEverywhere) {
-        result_.candidates.push_back(std::move(*candidate));
-      }
-      if (!fast) return;
+      if (time > before + facts().scale.period) return;
+      result_.candidates.push_back(std::move(*candidate));
     }
   }
 

@@ -161,8 +161,7 @@ INSTANTIATE_TEST_SUITE_P(Surface, Truth, testing::Values(0.002, 0.005, 0.01));
 // Of what is written in place of rows without noise: no farther from the surface than the chords
 // were, whatever the control, and far nearer where that is asked for or the form is a curve. Three
 // decimals are a fifth of the least tolerance here, and the chords that grbl makes of arcs half of
-// it. Times within a period of the control for each run, or within what the longer path takes, are
-// the same.
+// it. Times within a period of the control for each run are the same.
 TEST_P(Truth, OfWhatIsWrittenIsNearerThanThatOfTheChords) {
   struct Written {
     const char* target;
@@ -193,9 +192,7 @@ TEST_P(Truth, OfWhatIsWrittenIsNearerThanThatOfTheChords) {
     fmt::print("CAM tolerance {}, {}, {}: rms {:.6f} -> {:.6f} mm, blocks {} -> {}\n", cam, target,
                name_of(prefer), rms_before, rms_after, result.blocks_in, result.blocks_out);
     EXPECT_LE(rms_after, part * rms_before);
-    const double same =
-        std::max(options.machine->servo_period * static_cast<double>(rewritten_runs(result)),
-                 kCost.longer * result.runs_before_s);
+    const double same = options.machine->servo_period * static_cast<double>(rewritten_runs(result));
     EXPECT_LE(result.runs_after_s, result.runs_before_s + same);
     const double most = prefer == Prefer::kAccuracy ? 1.5 : 1;
     EXPECT_LE(static_cast<double>(result.blocks_out), most * static_cast<double>(result.blocks_in));
