@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <random>
 #include <span>
 #include <vector>
 
@@ -52,6 +53,25 @@ inline std::vector<Point3> noisy_half_circle(double radius, int chords, double n
 inline std::vector<Point3> circle_path(double radius, int chords) {
   std::vector<Point3> points = arc_path(radius, 2 * std::numbers::pi, chords);
   points.back() = points.front();
+  return points;
+}
+
+// A flat of six blocks of 5 mm along x, a rounding of 8 mm in eleven chords up to 45 degrees, a
+// slope of six blocks; the inner vertices are off by up to `noise` along z, evenly.
+inline std::vector<Point3> noisy_rounding(double noise, unsigned seed, double block = 5) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> off(-noise, noise);
+  constexpr double kTurn = std::numbers::pi / 4;
+  std::vector<Point3> points;
+  for (int i = 0; i <= 6; ++i) points.emplace_back(block * (i - 6), 0, 0);
+  for (int i = 1; i <= 11; ++i) {
+    const double angle = kTurn * i / 11;
+    points.emplace_back(8 * std::sin(angle), 0, 8 - 8 * std::cos(angle));
+  }
+  const Point3 joint = points.back();
+  for (int i = 1; i <= 6; ++i)
+    points.push_back(joint + i * block * Vector3(1, 0, 1) / std::sqrt(2));
+  for (std::size_t i = 1; i + 1 < points.size(); ++i) points[i].z() += off(random);
   return points;
 }
 

@@ -91,15 +91,14 @@ double best_weight(SectionSpline& spline) {
   return golden_maximum(worth, best - 1, best + 1, kDenoiseTuning.closings).at;
 }
 
-void denoise_section(std::span<const Point3> points, std::span<const double> parameters,
-                     std::span<Point3> denoised) {
+void denoise_section(std::span<Point3> points, std::span<const double> parameters) {
   const std::size_t judged = std::min(points.size(), kDenoiseTuning.judged);
   const std::size_t first = (points.size() - judged) / 2;
   SectionSpline part(points.subspan(first, judged), parameters.subspan(first, judged));
   const double weight = std::pow(10, best_weight(part));
   SectionSpline whole(points, parameters);
   whole.solve(weight);
-  for (std::size_t i = 1; i + 1 < points.size(); ++i) denoised[i] = whole.place(i);
+  for (std::size_t i = 1; i + 1 < points.size(); ++i) points[i] = whole.place(i);
 }
 
 // Calls `found` with the first and the last vertex of each section.
@@ -110,6 +109,45 @@ void each_section(std::size_t vertices, const PathFeatures& features, const Func
     if (i + 1 < vertices && !parts_sections(features, i)) continue;
     found(begin, i);
     begin = i;
+  }
+}
+
+// Puts the vertices from `first` to `last`, which were meant to be on one line, on that of least
+// squares. A corner at its end stays.
+void straighten(std::span<const Point3> points, const PathFeatures& f, std::size_t first,
+                std::size_t last, std::span<Point3> denoised) {
+  const bool keeps_first = f.kinds[first] != VertexKind::kSmooth;
+  const bool keeps_last = f.kinds[last] != VertexKind::kSmooth;
+  // The line passes the mean of these.
+  const std::size_t from = keeps_last && !keeps_first ? last : first;
+  const std::size_t to = keeps_first ? first : last;
+  const auto count = static_cast<double>(to + 1 - from);
+  Point3 mean = Point3::Zero();
+  double at = 0;
+  for (std::size_t i = from; i <= to; ++i) {
+    mean += points[i] / count;
+    at += f.parameters[i] / count;
+  }
+  Vector3 step = Vector3::Zero();
+  for (std::size_t i = first; i <= last; ++i) step += (f.parameters[i] - at) * (points[i] - mean);
+  step.normalize();
+  for (std::size_t i = first; i <= last; ++i) {
+    const bool is_kept = (i == first && keeps_first) || (i == last && keeps_last);
+    if (!is_kept) denoised[i] = mean + (points[i] - mean).dot(step) * step;
+  }
+}
+
+// Lines that meet at a smooth vertex are one: beside another one neither would be longer.
+void straighten_lines(std::span<const Point3> points, const PathFeatures& f,
+                      std::span<Point3> denoised) {
+  for (std::size_t first = 0; first + 1 < points.size();) {
+    std::size_t last = first + 1;
+    while (last + 1 < points.size() && f.lines[last - 1] && f.lines[last] &&
+           f.kinds[last] == VertexKind::kSmooth) {
+      ++last;
+    }
+    if (last > first + 1) straighten(points, f, first, last, denoised);
+    first = last;
   }
 }
 
@@ -129,12 +167,12 @@ bool is_straight_within(std::span<const Point3> section, double limit) {
 std::vector<Point3> denoised_positions(std::span<const Point3> points,
                                        const PathFeatures& features) {
   std::vector<Point3> denoised(points.begin(), points.end());
+  straighten_lines(points, features, denoised);
   const std::span<const double> parameters = features.parameters;
   each_section(points.size(), features, [&](std::size_t first, std::size_t last) {
     const std::size_t count = last + 1 - first;
     if (count < kDenoiseTuning.fewest) return;
-    denoise_section(points.subspan(first, count), parameters.subspan(first, count),
-                    std::span(denoised).subspan(first, count));
+    denoise_section(std::span(denoised).subspan(first, count), parameters.subspan(first, count));
   });
   return denoised;
 }
@@ -170,7 +208,8 @@ std::vector<Point3> denoised_among_noise(std::span<const Point3> points,
   }
   each_section(points.size(), features, [&](std::size_t first, std::size_t last) {
     const auto section = points.subspan(first, last + 1 - first);
-    if (is_straight_within(section, limit)) std::ranges::copy(section, &denoised[first]);
+    if (section.size() < 3 || !is_straight_within(section, limit)) return;
+    std::ranges::copy(section.subspan(1, section.size() - 2), &denoised[first + 1]);
   });
   if (!any) denoised.clear();
   return denoised;

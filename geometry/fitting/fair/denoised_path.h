@@ -43,8 +43,9 @@ inline constexpr DenoiseTuning kDenoiseTuning;
 
 // One position per vertex. Between kept corners, corners that no noise explains, and lines, it is
 // on the cubic spline with a knot at every vertex that has the least sum of squared distances and
-// of energy (the integral of |C'''|^2), the two weighed as generalised cross-validation says. The
-// vertices that part those sections stay, and so do sections of few vertices. Linear time.
+// of energy (the integral of |C'''|^2), the two weighed as generalised cross-validation says. Those
+// of one line are on that of least squares. The other vertices that part those sections stay, and
+// so do sections of few vertices. Linear time.
 //
 // `features`: of these points, neighbours apart.
 [[nodiscard]] std::vector<Point3> denoised_positions(std::span<const Point3> points,

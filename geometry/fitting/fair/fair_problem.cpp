@@ -49,8 +49,12 @@ class ProblemMaker {
   [[nodiscard]] double length(std::size_t edge) const {
     return f_.parameters[edge + 1] - f_.parameters[edge];
   }
+  // Where vertex i is of an edge: on its line among noise where the edge was meant as one.
+  [[nodiscard]] const Point3& end_of(std::size_t edge, std::size_t i) const {
+    return f_.lines[edge] && noisy(i) && !pinned(i) ? care_.denoised[i] : p_[i];
+  }
   [[nodiscard]] Vector3 direction(std::size_t edge) const {
-    return (p_[edge + 1] - p_[edge]) / length(edge);
+    return (end_of(edge, edge + 1) - end_of(edge, edge)) / length(edge);
   }
   [[nodiscard]] bool corner(std::size_t i) const { return f_.kinds[i] == VertexKind::kCorner; }
   [[nodiscard]] bool pinned(std::size_t i) const { return f_.kinds[i] == VertexKind::kKeptCorner; }
@@ -216,8 +220,9 @@ class ProblemMaker {
       problem_.breakpoints.push_back(straight->from);
       problem_.breakpoints.push_back(straight->to);
       const Vector3 d = direction(edge);
-      problem_.zones.push_back({straight->from, straight->to, p_[edge] + (straight->from - u0) * d,
-                                p_[edge] + (straight->to - u0) * d});
+      const Point3& start = end_of(edge, edge);
+      problem_.zones.push_back({straight->from, straight->to, start + (straight->from - u0) * d,
+                                start + (straight->to - u0) * d});
       add_leg_samples(edge, straight->to, u1);
       if (!pinned(edge + 1) && !corner(edge + 1)) add_smooth_end(straight->to, u1);
       since_break_ = 0;
@@ -279,7 +284,7 @@ class ProblemMaker {
     FitSample sample;
     sample.parameter = u;
     sample.along = direction(edge);
-    sample.target = p_[edge] + (u - f_.parameters[edge]) * sample.along;
+    sample.target = end_of(edge, edge) + (u - f_.parameters[edge]) * sample.along;
     sample.limit = limit_ * share(edge);
     problem_.samples.push_back(sample);
   }

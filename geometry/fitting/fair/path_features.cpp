@@ -174,6 +174,7 @@ std::vector<bool> lines_of(std::span<const Point3> points, const PathFeatures& f
   };
   const auto find = [&](double off, bool alone) {
     const std::vector<std::size_t> ends = straight_ends(points, f, off);
+    const double times = alone ? kFeatureTuning.edge_is_longer : kFeatureTuning.line_is_longer;
     for (std::size_t k = 0; k + 1 < ends.size(); ++k) {
       const auto beside = [&](std::size_t vertex, std::size_t section) {
         const bool meets = f.kinds[vertex] == VertexKind::kSmooth;
@@ -182,7 +183,7 @@ std::vector<bool> lines_of(std::span<const Point3> points, const PathFeatures& f
       const double next = std::max(beside(ends[k], k - 1), beside(ends[k + 1], k + 1));
       for (std::size_t edge = ends[k]; edge < ends[k + 1]; ++edge) {
         const double here = alone ? length(edge, edge + 1) : length(ends[k], ends[k + 1]);
-        const bool is_longer = here > kFeatureTuning.line_is_longer * next && (next > 0 || !alone);
+        const bool is_longer = here > times * next && (next > 0 || !alone);
         lines[edge] = lines[edge] || is_longer;
       }
     }

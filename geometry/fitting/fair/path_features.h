@@ -47,13 +47,15 @@ struct FeatureTuning {
   // A line cut into blocks turns by less [> SmoothCurve.AddsNothingToALineWithoutNoise], or its
   // vertices are off it by no more than the greatest rounding errors of both ends explain (across,
   // 2 sqrt(3) of a coordinate's), or by this part of the tolerance: where it meets a curve, a CAM
-  // system ends its last edge beyond the joint.
+  // system ends its last edge beyond the joint, and noise moves its vertices.
   double no_turn = 1e-6;
   // [at 1e-4: SmoothCurve.StaysOnLinesThatAreCutIntoBlocksBesideARounding]
-  double straight = 0.05;
-  // A line is this many times longer than the edges beside it. Chords of a curve whose curvature
-  // changes smoothly differ less from their neighbours.
+  double straight = 0.5;  // [PathFeatures.ALineAmongNoiseIsOneBesideShorterEdges]
+  // A line is this many times longer than the edges beside it: with its straight continuation,
+  // which rounding makes of some edges, too; or each of its edges by itself. Chords of a curve
+  // whose curvature changes smoothly differ less from their neighbours.
   double line_is_longer = 6;  // [>]
+  double edge_is_longer = 3;
   // A vertex turns more than by noise when it turns by so many noises over its edge: four standard
   // deviations of a second difference, sqrt(6) noises.
   double sure_turn = 4 * 2.45;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <vector>
@@ -85,6 +86,50 @@ TEST(MeantPath, KeepsWhatWasMeantAsACorner) {
   EXPECT_EQ(meant.front(), points.front());
   EXPECT_EQ(meant.back(), points.back());
   EXPECT_NE(meant[20], points[20]);
+}
+
+// The first vertex stays, since it is kept, and so does the last one, read the other way round.
+TEST(MeantPath, OfALineBesideShorterEdgesIsTheLineOfLeastSquares) {
+  double before = 0;
+  double after = 0;
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    const std::vector<Point3> points = noisy_rounding(0.008, seed);
+    const auto meant = denoised_positions(points, find_features(points, {0.03, 3.2}));
+    EXPECT_EQ(meant.front(), points.front());
+    const std::vector<Point3> back(points.rbegin(), points.rend());
+    const auto meant_back = denoised_positions(back, find_features(back, {0.03, 3.2}));
+    EXPECT_EQ(meant_back.back(), points.front());
+    double products = 0;
+    double squares = 0;
+    const auto along = [&](std::size_t i) { return points[i].x() - points[0].x(); };
+    for (std::size_t i = 1; i <= 6; ++i) {
+      products += along(i) * points[i].z();
+      squares += along(i) * along(i);
+    }
+    for (std::size_t i = 1; i <= 6; ++i) {
+      EXPECT_NEAR(meant[i].z(), along(i) * products / squares, 1e-5);
+      before += points[i].z() * points[i].z();
+      after += meant[i].z() * meant[i].z();
+    }
+  }
+  EXPECT_LT(after, 0.3 * before);  // one of six degrees of freedom: a sixth is expected
+}
+
+// Up the slope beside a rounding, over a ridge, and down the slope beside the next one.
+TEST(MeantPath, OfTwoLinesThatMeetAtACornerIsThoseTwo) {
+  std::vector<Point3> points = noisy_rounding(0.008, 3);
+  const std::size_t ridge = points.size() - 1;
+  for (std::size_t i = ridge; i-- > 0;) {
+    points.emplace_back(2 * points[ridge].x() - points[i].x(), 0, points[i].z());
+  }
+  const auto meant = denoised_positions(points, find_features(points, {0.03, 3.2}));
+  EXPECT_EQ(meant[ridge], points[ridge]);
+  double moved = 0;
+  for (std::size_t i = ridge - 5; i <= ridge + 5; ++i) {
+    moved = std::max(moved, (meant[i] - points[i]).norm());
+  }
+  EXPECT_GT(moved, 0.002);
+  EXPECT_LT(moved, 0.02);
 }
 
 TEST(MeantPath, OfFewVerticesIsTheVertices) {

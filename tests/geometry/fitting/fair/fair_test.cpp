@@ -172,6 +172,34 @@ TEST(SmoothCurve, StaysOnLinesThatAreCutIntoBlocksBesideARounding) {
   EXPECT_LT(off, 7e-4);
 }
 
+// The same rounding in coarse chords among noise of 8 um, in a band of 30 um. Taken for samples of
+// a curve, the blocks would leave it so much room that it swings by 20 um between two of them.
+TEST(SmoothCurve, RunsStraightAlongLinesAmongNoise) {
+  double squares = 0;
+  double squares_of_chords = 0;
+  for (unsigned seed = 1; seed <= 10; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    const std::vector<Point3> points = noisy_rounding(0.008, seed);
+    FairOptions options = with_tolerance(0.03);
+    options.accurate = true;
+    const auto path = fair_path(points, options);
+    ASSERT_TRUE(path);
+    double off = 0;
+    for (double u = path->curve.first(); path->curve.point_at(u).x() < -1; u += 0.05) {
+      const double z = path->curve.point_at(u).z();
+      off = std::max(off, std::abs(z));
+      squares += 0.05 * z * z;
+    }
+    EXPECT_LT(off, 0.009);
+    for (std::size_t i = 0; i < 6; ++i) {
+      const double a = points[i].z();
+      const double b = points[i + 1].z();
+      squares_of_chords += 5 * (a * a + a * b + b * b) / 3;
+    }
+  }
+  EXPECT_LT(std::sqrt(squares / squares_of_chords), 0.9);
+}
+
 // Vertices 0.5 mm apart on a wave, each off by up to 8 um, in a band of 30 um: the curve is nearer
 // to the wave than they are, not as far off as the band allows.
 TEST(SmoothCurve, AmongLittleNoiseIsNearerToThePathThanTheVertices) {

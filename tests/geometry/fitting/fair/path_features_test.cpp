@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "tests/support/paths.h"
 #include "tests/support/surface_programs.h"
 
 namespace batten::geometry {
@@ -141,6 +142,29 @@ TEST(PathFeatures, NoiseMakesNoCornersAndNoLines) {
   const auto f = find_features(zigzag_line(100, 0.5, 0.03), {0.05, 3.2});
   EXPECT_EQ(kinds_of(f), std::string(199, 's'));
   EXPECT_EQ(lines_of(f), std::string(200, '.'));
+}
+
+// Beside edges that are much shorter, blocks that only noise turns were meant as a line; not where
+// a vertex is off it by more than can be taken back inside the tolerance.
+TEST(PathFeatures, ALineAmongNoiseIsOneBesideShorterEdges) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    std::vector<Point3> points = noisy_rounding(0.008, seed);
+    const std::string lines = "------" + std::string(11, '.') + "------";
+    EXPECT_EQ(lines_of(find_features(points, {0.03, 3.2})), lines);
+    for (std::size_t i = 1; i <= 6; ++i) points[i].z() = i == 3 ? 0.0145 : 0;
+    EXPECT_EQ(lines_of(find_features(points, {0.03, 3.2})), lines);
+    EXPECT_NE(lines_of(find_features(points, {0.02, 3.2})), lines);
+  }
+}
+
+// The chords are of 0.571 mm.
+TEST(PathFeatures, ALineHasEdgesThatAreThreeTimesAsLongAsThoseBesideIt) {
+  const auto lines = [](double block) {
+    return lines_of(find_features(noisy_rounding(0.001, 1, block), {0.03, 3.2}));
+  };
+  EXPECT_EQ(lines(0.571 * 3.2), "------" + std::string(11, '.') + "------");
+  EXPECT_EQ(lines(0.571 * 2.8), std::string(23, '.'));
 }
 
 TEST(PathFeatures, NoiseIsSmoothThoughItTurnsMoreThanCorners) {
