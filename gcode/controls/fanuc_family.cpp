@@ -17,6 +17,8 @@ Control fanuc_like(std::string_view name, std::string_view description, const Cu
   // No manual that was read names the characters of a block; no line of ours needs half of these.
   control.max_line_length = 128;
   control.capital_comments = true;
+  // R makes an arc of one radius, which the control has nothing to compare.
+  control.arc_form = ArcForm::kShorter;
   control.arc_rule = ArcRule::kFanuc;
   control.max_sweep_deg = 360;
   control.known_marks = mark(SourceMark::kMacroFlow) | mark(SourceMark::kHighSpeedMode);
