@@ -152,36 +152,49 @@ class CurveForms {
     offers_.clear();
   }
 
-  [[nodiscard]] bool is_slower_than_run(const Candidate& candidate) const {
-    const CostScale& scale = facts().scale;
-    return is_slower(candidate.figures.times, scale.original.times, scale.period);
-  }
-
-  // The last candidate again, with the run where it is slower: everywhere, and only as much of it
-  // as it takes; where it is no slower then. Not of a form that is asked for by name.
+  // The last candidate again, with the run where it is slower: at its ends, or else everywhere, and
+  // only as much of it as it takes; where it is no slower then. Not of a form that is asked for by
+  // name.
   void put_run_where_slower(Offer offer) {
-    const Candidate& slower = result_.candidates.back();
+    const Figures slower = result_.candidates.back().figures;
     if (offer.form == Form::kCurves || !task_.run.bends.empty()) return;
     if (is_forced(offer.form, facts(), task_.options)) return;
-    if (!is_slower_than_run(slower) || !may_be_mended(slower, offer)) return;
-    slower_by_ = slower.figures.times.programmed - facts().scale.original.times.programmed;
-    for (const RunInPlace where : {RunInPlace::kEverywhere, RunInPlace::kWhereNeeded}) {
-      offer.options.run_in_place = where;
-      auto candidate = made(offer);
-      if (!candidate) return;
-      candidate->has_run_in_place = true;
-      const double time = candidate->figures.times.programmed;
-      const double before = facts().scale.original.times.programmed;
-      if (time > before + facts().scale.period) return;
-      result_.candidates.push_back(std::move(*candidate));
+    if (!is_slower(slower.times, facts().scale.original.times, facts().scale.period)) return;
+    if (offer.form == Form::kArcs && may_lead(offer.form, slower) &&
+        is_added_with_run(offer, RunInPlace::kAtEnds)) {
+      return;
+    }
+    if (!may_be_mended(slower, offer)) return;
+    slower_by_ = slower.times.programmed - facts().scale.original.times.programmed;
+    if (is_added_with_run(offer, RunInPlace::kEverywhere)) {
+      is_added_with_run(offer, RunInPlace::kWhereNeeded);
     }
   }
 
+  bool is_added_with_run(Offer offer, RunInPlace where) {
+    offer.options.run_in_place = where;
+    auto candidate = made(offer);
+    if (!candidate) return false;
+    candidate->has_run_in_place = where != RunInPlace::kAtEnds;
+    const CostScale& scale = facts().scale;
+    if (candidate->figures.times.programmed > scale.original.times.programmed + scale.period) {
+      return false;
+    }
+    result_.candidates.push_back(std::move(*candidate));
+    return true;
+  }
+
+  // Whether it could be the best, were it as fast as any form.
+  [[nodiscard]] bool may_lead(Form form, const Figures& figures) const {
+    if (task_.scope == CandidateScope::kAll || task_.memo != nullptr) return true;
+    const double distance = std::min(figures.distance, facts().scale.original.distance);
+    return !setting_.bounds.is_beaten(form, figures.blocks, distance);
+  }
+
   // Whether it could be the best, lost it no time against the run.
-  bool may_be_mended(const Candidate& slower, const Offer& offer) {
+  bool may_be_mended(Figures mended, const Offer& offer) {
     if (task_.scope == CandidateScope::kAll || task_.memo != nullptr) return true;
     const Figures& before = facts().scale.original;
-    Figures mended = slower.figures;
     for (const double lost : lost_by_last_plan(offer)) {
       mended.times.programmed -= std::max(lost, 0.0);
     }
@@ -228,6 +241,10 @@ class CurveForms {
 
   [[nodiscard]] std::optional<OutputPlan> with_run_in(Offer offer) {
     const RunInPlace where = std::exchange(offer.options.run_in_place, RunInPlace::kNowhere);
+    if (where == RunInPlace::kAtEnds) {
+      if (!last_.plan) last_.plan = plan_of(offer);
+      return slow_parts().with_run_at_ends(last_.plan.value());
+    }
     const std::vector<double>& lost = lost_by_last_plan(offer);
     if (!last_.slow) last_.slow = slow_parts().find(*last_.plan, lost);
     const bool all = where == RunInPlace::kEverywhere;

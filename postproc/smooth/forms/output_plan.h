@@ -44,7 +44,7 @@ struct OutputPlan {
 };
 
 // Where the run stands in place of lines and arcs (slow_parts.h).
-enum class RunInPlace : std::uint8_t { kNowhere, kWhereNeeded, kEverywhere };
+enum class RunInPlace : std::uint8_t { kNowhere, kAtEnds, kWhereNeeded, kEverywhere };
 
 struct PlanOptions {
   const gcode::Control* target = nullptr;

@@ -1,12 +1,15 @@
 #include "postproc/smooth/forms/slow_parts.h"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
+#include <utility>
 #include <variant>
 
 #include "geometry/basic/operations.h"
 #include "postproc/machine/models/velocity_profile.h"
 #include "postproc/runs/run_path.h"
+#include "postproc/smooth/methods/curve_request.h"
 
 namespace batten::postproc {
 namespace {
@@ -58,6 +61,24 @@ double sum_at(double parameter, const std::vector<double>& places,
   const auto i = static_cast<std::size_t>(after - places.begin()) - 1;
   const double part = (parameter - places[i]) / (places[i + 1] - places[i]);
   return sums[i] + part * (sums[i + 1] - sums[i]);
+}
+
+bool is_arc(const PlannedMove& move) { return std::holds_alternative<geometry::Arc>(move.piece); }
+
+// A move that goes on to the parameter `end`, cut at two parameters in between.
+OutputPlan cut_in_three(const PlannedMove& move, double end, double first, double second) {
+  const auto part = [&](double parameter) { return (parameter - move.start) / (end - move.start); };
+  OutputPlan cut;
+  cut.moves = {{geometry::sub_piece(move.piece, 0, part(first)), move.feed, {}, move.start},
+               {geometry::sub_piece(move.piece, part(first), part(second)), move.feed, {}, first},
+               {geometry::sub_piece(move.piece, part(second), 1), move.feed, {}, second}};
+  return cut;
+}
+
+OutputPlan without_comments(OutputPlan plan) {
+  plan.comments_after.clear();
+  for (PlannedMove& move : plan.moves) move.comments_before.clear();
+  return plan;
 }
 
 }  // namespace
@@ -164,10 +185,60 @@ std::optional<OutputPlan> SlowParts::with_run(const OutputPlan& plan,
       continue;
     }
     const PlannedMove& move = plan.moves[i];
-    has_arc = has_arc || std::holds_alternative<geometry::Arc>(move.piece);
+    has_arc = has_arc || is_arc(move);
     mixed.moves.push_back({move.piece, move.feed, {}, move.start});
   }
   if (plan.form == Form::kArcs && !has_arc) return std::nullopt;
+  place_comments(run_, fair_, mixed);
+  return mixed;
+}
+
+// mm, from rest.
+double SlowParts::way_to_feed(double feed) const {
+  return std::pow(feed / 60, 2) / (2 * limits_of(machine_, feed).acceleration.minCoeff());
+}
+
+bool SlowParts::begins_with_run(OutputPlan& plan) const {
+  const PlannedMove& move = plan.moves.front();
+  const double end = end_of(plan, 0, fair_.curve);
+  const auto vertex =
+      std::ranges::lower_bound(fair_.vertex_parameters, move.start + way_to_feed(move.feed));
+  if (!is_arc(move) || vertex == fair_.vertex_parameters.end()) return false;
+  const double way = *vertex - move.start;
+  if (way > kSlowParts.of_arc * (end - move.start)) return false;
+  const double left = end - *vertex;
+  const double second = *vertex + std::min(kSlowParts.short_arc * way, kSlowParts.of_arc * left);
+  const OutputPlan cut = cut_in_three(move, end, *vertex, second);
+  std::vector<PlannedMove> moves;
+  append_run(cut, {0, 0}, moves);
+  moves.insert(moves.end(), cut.moves.begin() + 1, cut.moves.end());
+  moves.insert(moves.end(), plan.moves.begin() + 1, plan.moves.end());
+  plan.moves = std::move(moves);
+  return true;
+}
+
+bool SlowParts::ends_with_run(OutputPlan& plan) const {
+  const PlannedMove move = plan.moves.back();
+  const double end = fair_.curve.last();
+  const auto after =
+      std::ranges::upper_bound(fair_.vertex_parameters, end - way_to_feed(move.feed));
+  if (!is_arc(move) || after == fair_.vertex_parameters.begin()) return false;
+  const double second = *(after - 1);
+  const double way = end - second;
+  if (way > kSlowParts.of_arc * (end - move.start)) return false;
+  const double left = second - move.start;
+  const double first = second - std::min(kSlowParts.short_arc * way, kSlowParts.of_arc * left);
+  const OutputPlan cut = cut_in_three(move, end, first, second);
+  plan.moves.back() = cut.moves[0];
+  plan.moves.push_back(cut.moves[1]);
+  append_run(cut, {2, 2}, plan.moves);
+  return true;
+}
+
+std::optional<OutputPlan> SlowParts::with_run_at_ends(const OutputPlan& plan) const {
+  OutputPlan mixed = without_comments(plan);
+  const bool at_end = ends_with_run(mixed);
+  if (!begins_with_run(mixed) && !at_end) return std::nullopt;
   place_comments(run_, fair_, mixed);
   return mixed;
 }

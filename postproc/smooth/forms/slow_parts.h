@@ -1,6 +1,6 @@
 // Parts of a plan on which the control loses more time than on the run itself, and the run in
-// their place: tight arcs, joints that are not quite tangent, chords that it brakes along. So a
-// form that is slower in a few places is none that is slower.
+// their place: tight arcs, joints that are not quite tangent, chords that it brakes along, arcs
+// that begin or end at rest. So a form that is slower in a few places is none that is slower.
 #pragma once
 
 #include <cstddef>
@@ -15,6 +15,8 @@ namespace batten::postproc {
 struct SlowPartTuning {
   double slow = 0.005;           // of a move's time at its feed: so much more lost is slow
   std::size_t wider_by = 2;      // moves on each side that may go with the slow ones
+  double short_arc = 4;          // behind the run at an end, of the way that the run goes there
+  double of_arc = 0.5;           // that the run may take; of what is left, the short arc
   std::size_t timed_beside = 8;  // moves on each side that a part is timed with
 };
 inline constexpr SlowPartTuning kSlowParts;
@@ -41,6 +43,11 @@ class SlowParts {
   [[nodiscard]] std::vector<SlowPart> find(const OutputPlan& plan,
                                            std::span<const double> lost) const;
 
+  // The plan with the run where it begins and ends by arcs, for the way from rest to the feed, and
+  // a short arc between that and the rest of each: what the control makes of the joint slows a
+  // whole move. Nothing where the plan has no such arc, or none that is long enough.
+  [[nodiscard]] std::optional<OutputPlan> with_run_at_ends(const OutputPlan& plan) const;
+
   // The plan with the run in place of those parts. Nothing where there are none, or no arc is left
   // of a plan of arcs.
   [[nodiscard]] std::optional<OutputPlan> with_run(const OutputPlan& plan,
@@ -49,6 +56,9 @@ class SlowParts {
  private:
   class Search;
 
+  [[nodiscard]] double way_to_feed(double feed) const;
+  [[nodiscard]] bool begins_with_run(OutputPlan& plan) const;
+  [[nodiscard]] bool ends_with_run(OutputPlan& plan) const;
   void append_run(const OutputPlan& plan, const SlowPart& part,
                   std::vector<PlannedMove>& moves) const;
 

@@ -54,7 +54,7 @@ struct Candidate {
   double max_curvature = 0;       // 1/mm, greatest of the curve that it was made of
   bool chords_for_steps = false;  // see OutputPlan
   bool arcs_as_chords = false;
-  bool has_run_in_place = false;        // where its form alone would be slower
+  bool has_run_in_place = false;        // in parts where its form alone would be slower
   bool rounds_seam = false;             // see geometry::SmoothCurve
   std::vector<TimedPiece> moves;        // of a piece of a run, and in a RunMemo; empty otherwise
   std::optional<OutputPlan> plan = {};  // where it is asked for (CandidateScope)

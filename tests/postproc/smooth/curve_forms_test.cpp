@@ -8,6 +8,7 @@
 #include <cmath>
 #include <set>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include "tests/support/one_run.h"
@@ -79,6 +80,27 @@ TEST(CurveForms, HaveTheRunWhereTheyAreSlower) {
   EXPECT_TRUE(result.proved);
   EXPECT_LE(result.blocks_out, 0.6 * result.blocks_in);
   EXPECT_LE(result.runs_after_s, result.runs_before_s + options.machine->servo_period);
+}
+
+// A plunge, a part of a circle in chords, and up again. LinuxCNC starts an arc slowly after a
+// plunge: its first and last moves are chords, between which it is arcs.
+TEST(CurveForms, OfPartsOfCirclesAreArcs) {
+  SmoothOptions options = options_for("linuxcnc");
+  options.machine = find_machine("linuxcnc");
+  for (const auto& [radius, sweep, chords] :
+       {std::tuple(10.0, 2 * geometry::kPi, 100), std::tuple(12.0, geometry::kPi / 2, 60),
+        std::tuple(20.0, 4.0, 150), std::tuple(35.0, 3.0, 100)}) {
+    SCOPED_TRACE(radius);
+    std::string text = fmt::format("G21 G90 G17\nG0 X{:.3f} Y0 Z5\nG1 Z-1 F600\nF1500\n", radius);
+    for (int i = 1; i <= chords; ++i) {
+      text += fmt::format("G1 X{:.3f} Y{:.3f}\n", radius * std::cos(sweep * i / chords),
+                          radius * std::sin(sweep * i / chords));
+    }
+    const SmoothResult result = smoothed(text + "G0 Z5\nM2\n", options);
+    EXPECT_TRUE(result.proved);
+    EXPECT_LE(result.blocks_out, 25U);
+    EXPECT_LE(result.runs_after_s, result.runs_before_s + options.machine->servo_period);
+  }
 }
 
 }  // namespace

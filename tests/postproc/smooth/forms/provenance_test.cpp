@@ -1,12 +1,13 @@
 // The comment that a program was smoothed: written once, found again, whatever stands around it; or
 // its user is told that there is none.
+#include "postproc/smooth/forms/provenance.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
 #include "gcode/control/control.h"
 #include "gcode/controls/built_in.h"
-#include "postproc/smooth/forms/provenance.h"
 #include "tests/support/wavy_programs.h"
 
 namespace batten::postproc {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 #include <random>
+#include <string>
 #include <variant>
 #include <vector>
 
@@ -25,18 +26,19 @@ constexpr double kFeed = 3000;
 constexpr double kLeg = 20;  // mm
 
 // Straight ways of 20 mm with bends to the left and to the right between them, as lines and arcs,
-// and a run of chords of 0.7 mm whose vertices are on them.
+// and a run of chords of 0.7 mm whose vertices are on them; or the bends alone.
 struct BentPath {
   Run run;
   geometry::SmoothCurve fair{geometry::curve_of([](double u) { return Point3(u, 0, 0); }, 0, 1, 10),
                              {}};
   OutputPlan plan;
 
-  explicit BentPath(const std::vector<double>& radii) {
+  explicit BentPath(const std::vector<double>& radii, bool has_ways = true) {
     plan.form = Form::kArcs;
     Point3 place(0, 0, 0);
     Point3 along(1, 0, 0);
     const auto add_way = [&] {
+      if (!has_ways) return;
       add(Line{place, place + kLeg * along});
       place += kLeg * along;
     };
@@ -147,6 +149,37 @@ TEST(SlowParts, AreWhereMovesMeetNotQuiteTangent) {
   expect_path_of(*mixed, path.run);
   EXPECT_LT(count_of_arcs(*mixed), count_of_arcs(path.plan));
   EXPECT_NEAR(time_of(path.plan, machine) - time_of(*mixed, machine), found[0].won, 0.002);
+}
+
+// 50 mm/s at 500 mm/s^2 takes 2.5 mm: four chords of 0.7 mm.
+TEST(SlowParts, GiveTheEndsOfArcsToTheRun) {
+  const Machine& machine = *find_machine("linuxcnc");
+  const BentPath path({40}, false);
+  const auto mixed = path.parts(machine).with_run_at_ends(path.plan);
+  ASSERT_TRUE(mixed);
+  expect_path_of(*mixed, path.run);
+  std::string forms;
+  for (const PlannedMove& move : mixed->moves) {
+    forms += std::holds_alternative<Arc>(move.piece) ? 'a' : 'l';
+  }
+  EXPECT_EQ(forms, "llllaaallll");
+  for (std::size_t i = 1; i < 4; ++i) {
+    EXPECT_EQ(geometry::start_point(mixed->moves[i].piece), path.run.points[i]);
+  }
+  const auto length = [&](std::size_t i) { return geometry::length_of(mixed->moves[i].piece); };
+  EXPECT_NEAR(length(4), 4 * path.fair.vertex_parameters[4], 0.01);
+  EXPECT_NEAR(length(6), length(4), 0.01);
+  EXPECT_GT(length(5), 20);
+
+  // Of a short arc there is less.
+  const BentPath small({6}, false);
+  const auto less = small.parts(machine).with_run_at_ends(small.plan);
+  ASSERT_TRUE(less);
+  expect_path_of(*less, small.run);
+  const BentPath tiny({3}, false);
+  EXPECT_FALSE(tiny.parts(machine).with_run_at_ends(tiny.plan));
+  const BentPath straight({15, 12});
+  EXPECT_FALSE(straight.parts(machine).with_run_at_ends(straight.plan));
 }
 
 TEST(SlowParts, OfTheRunItselfAreNone) {
