@@ -101,6 +101,7 @@ class CurveForms {
       make_best();
       if (has_form(Form::kCurves)) return;
     }
+    if (wanted != Form::kLines && is_fair && is_first_) offer_circle();
     if (wanted != Form::kLines) offer_arcs();
     if (wanted != Form::kLines && is_fair && is_first_) offer_arc_splines();
     if (wanted != Form::kArcs) offer_lines();
@@ -110,7 +111,7 @@ class CurveForms {
  private:
   [[nodiscard]] const RunFacts& facts() const { return result_.facts; }
   [[nodiscard]] double distance_before() const {
-    return std::max(facts().scale.original.distance, facts().scale.near);
+    return std::max(facts().off, facts().scale.near);
   }
 
   [[nodiscard]] bool has_form(Form form) const {
@@ -153,8 +154,8 @@ class CurveForms {
   }
 
   // The last candidate again, with the run where it is slower: at its ends, or else everywhere, and
-  // only as much of it as it takes; where it is no slower then. Not of a form that is asked for by
-  // name.
+  // only as much of it as it takes; where it is slower then by no more than a period, or one for
+  // each end. Not of a form that is asked for by name.
   void put_run_where_slower(Offer offer) {
     const Figures slower = result_.candidates.back().figures;
     if (offer.form == Form::kCurves || !task_.run.bends.empty()) return;
@@ -177,9 +178,9 @@ class CurveForms {
     if (!candidate) return false;
     candidate->has_run_in_place = where != RunInPlace::kAtEnds;
     const CostScale& scale = facts().scale;
-    if (candidate->figures.times.programmed > scale.original.times.programmed + scale.period) {
-      return false;
-    }
+    const double most =
+        scale.original.times.programmed + (where == RunInPlace::kAtEnds ? 2 : 1) * scale.period;
+    if (candidate->figures.times.programmed > most) return false;
     result_.candidates.push_back(std::move(*candidate));
     return true;
   }
@@ -235,6 +236,7 @@ class CurveForms {
     if (offer.options.run_in_place != RunInPlace::kNowhere) return with_run_in(offer);
     if (offer.form == Form::kCurves) return plan_curves(run, curve_.path, offer.options);
     if (offer.form == Form::kLines) return plan_lines(run, curve_.path, pieces_, offer.options);
+    if (offer.options.one_circle) return plan_circle(run, curve_.path, offer.options);
     return offer.around_vertices ? plan_arc_spline(run, curve_.path, offer.options)
                                  : plan_arcs(run, curve_.path, pieces_, bends_, offer.options);
   }
@@ -340,6 +342,14 @@ class CurveForms {
       const double blocks = std::max(least, arcs_expected(task_.run, count, plan));
       offers_.push_back({Form::kArcs, blocks, farther ? kFormTuning.of_arcs * deviation : 0, plan});
     }
+  }
+
+  void offer_circle() {
+    if (one_sided_) return;
+    const double whole = left_ + curve_.path.deviation;
+    PlanOptions plan = arcs_within(whole, whole);
+    plan.one_circle = true;
+    offers_.push_back({Form::kArcs, 0, 0, plan, true});
   }
 
   // Arcs in the band around the vertices themselves. Of arcs no more should come than there were:

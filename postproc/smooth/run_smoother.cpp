@@ -126,13 +126,18 @@ class RunSmoother {
     RunFacts& facts = result_.facts;
     facts.noise = fair.noise;
     facts.fair_curvature = CurvatureProfile(fair.curve).greatest();
-    facts.scale.original.distance = meant_->distance_of(run());
-    if (facts.scale.original.distance > kRun.takes_much * request.tolerance) {
+    facts.off = meant_->distance_of(run());
+    if (facts.off > kRun.takes_much * request.tolerance) {
       request.tolerance *= kRun.more_room;
       const auto through = curve_by(Method::kFair, request);
       if (through) fair_ = through->path;
-      facts.scale.original.distance = meant_->distance_of(run());
+      facts.off = meant_->distance_of(run());
     }
+    // A form is printed, and so were the vertices. The curve leaves a part of that; those that
+    // scatter less are exact in fewer decimals than they could have.
+    const double seen = fair_->noise / kBounds.rounding_left;
+    facts.scale.original.distance =
+        std::hypot(facts.off, std::min(rounding_, seen) / std::sqrt(3.0));
     facts.scale.known = kBounds.known * fair_->noise;
   }
 

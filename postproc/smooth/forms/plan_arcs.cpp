@@ -11,6 +11,7 @@
 #include "geometry/arcs/arc_fit.h"
 #include "geometry/arcs/arc_spline.h"
 #include "geometry/arcs/biarc.h"
+#include "geometry/arcs/circle_fit.h"
 #include "geometry/basic/rounding.h"
 #include "geometry/fitting/fair/fair_measure.h"
 #include "geometry/path/plane_curve.h"
@@ -603,6 +604,68 @@ std::optional<OutputPlan> plan_arc_spline(const Run& run, const geometry::Smooth
   for (const PlaneAxes& plane : arc_planes(options)) {
     if (!lies_across(run, plane.normal)) continue;
     auto plan = ArcSplinePlanner(run, fair, options, plane).plan();
+    if (plan && plan->moves.size() <= options.most_arcs) return plan;
+  }
+  return std::nullopt;
+}
+
+namespace {
+
+// An angle of a point on the circle, on the curve: between the vertices there it goes evenly.
+double parameter_at(double angle, const geometry::CircleFit& circle,
+                    const geometry::SmoothCurve& fair) {
+  const auto is_behind = [&](double each) { return std::abs(each) > std::abs(angle); };
+  const auto behind =
+      std::ranges::find_if(circle.angles.begin() + 1, circle.angles.end() - 1, is_behind);
+  const auto next = static_cast<std::size_t>(behind - circle.angles.begin());
+  const double before = circle.angles[next - 1];
+  const double part = (angle - before) / (circle.angles[next] - before);
+  const auto& at = fair.vertex_parameters;
+  return at[next - 1] + part * (at[next] - at[next - 1]);
+}
+
+std::optional<OutputPlan> plan_circle_in(const Run& run, const geometry::SmoothCurve& fair,
+                                         const PlaneAxes& plane, const PlanOptions& options) {
+  const Vector3 axis = Vector3::Unit(plane.normal);
+  const auto frame = geometry::PlaneFrame::across(axis);
+  std::vector<Point2> points;
+  points.reserve(run.points.size());
+  for (const Point3& p : run.points) points.emplace_back(frame.local(p).head<2>());
+  const auto circle = geometry::fit_circle(points, fit_deviation(options));
+  if (!circle) return std::nullopt;
+  const double height = run.points.front()[plane.normal];
+  const Point3 center = frame.global({circle->center.x(), circle->center.y(), height});
+  const Vector3 out = run.points.front() - center;
+  const double sweep = circle->angles.back();
+  const int count = static_cast<int>(std::ceil(std::abs(sweep) / kPlans.circle_arc - 1e-9));
+  OutputPlan plan;
+  plan.form = Form::kArcs;
+  double angle = 0;
+  Point3 start = run.points.front();
+  for (int i = 1; i <= count; ++i) {
+    const Point3 end =
+        i < count ? center + Eigen::AngleAxisd(sweep * i / count, axis) * out : run.points.back();
+    const geometry::Arc arc{start, end, center, axis, sweep / count};
+    for (const geometry::Arc& part : geometry::arc_parts(arc, parts_for(arc, *options.target))) {
+      if (!gcode::arc_refusal(*options.target, part, options.units).empty()) return std::nullopt;
+      plan.moves.push_back({part, run.feeds.front().feed, {}, parameter_at(angle, *circle, fair)});
+      angle += part.sweep;
+    }
+    start = end;
+  }
+  OwnChords(run, fair, options).put_into(plan);
+  place_comments(run, fair, plan);
+  return plan;
+}
+
+}  // namespace
+
+std::optional<OutputPlan> plan_circle(const Run& run, const geometry::SmoothCurve& fair,
+                                      const PlanOptions& options) {
+  if (!run.bends.empty() || feed_sections(run, fair).size() > 1) return std::nullopt;
+  for (const PlaneAxes& plane : arc_planes(options)) {
+    if (!lies_across(run, plane.normal)) continue;
+    auto plan = plan_circle_in(run, fair, plane, options);
     if (plan && plan->moves.size() <= options.most_arcs) return plan;
   }
   return std::nullopt;

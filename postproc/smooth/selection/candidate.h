@@ -64,6 +64,7 @@ struct RunFacts {             // whether it is rewritten or not
   CostScale scale;            // with the figures of the blocks as they are
   Form form = Form::kLines;   // of these: arcs where one of them is one
   double length = 0;          // mm
+  double off = 0;             // mm, rms distance of its vertices' path from the one that was meant
   double max_curvature = 0;   // 1/mm, circle through three neighbouring vertices
   double noise = 0;           // mm, rms distance of the vertices from the fair curve
   double coarse = 0;          // part of its vertices (coarse_part)

@@ -17,10 +17,12 @@ struct BoundTuning {
   // Of their scatter: the fair curve of scattered vertices is no better known, so that a form that
   // is nearer to it is not nearer to the path that was meant.
   double known = 0.5;
-  double fewer = 0.8;      // of the blocks that are expected there may be so few
-  double least_bytes = 8;  // of a block
-  double shorter = 0.9;    // of the bytes of a block in the same form, which it may be shorter than
-  double corners = 0.5;    // part of the vertices that makes a run one of corners
+  // Of the greatest rounding error of the vertices, what the fair curve leaves of it at the least.
+  double rounding_left = 0.4;  // [> CurveForms.OfADenseCircleAreArcs]
+  double fewer = 0.8;          // of the blocks that are expected there may be so few
+  double least_bytes = 8;      // of a block
+  double shorter = 0.9;  // of the bytes of a block in the same form, which it may be shorter than
+  double corners = 0.5;  // part of the vertices that makes a run one of corners
   double worth_trying = 0.02;  // part of the time: the least that there must be left to win
   // Of the time: what a search for each corner wins at most on the quick rounding of corners.
   double search_wins = 0.1;
