@@ -70,6 +70,7 @@ class CircleSearch {
 bool goes_round(std::span<const Point2> points, double limit, CircleFit& circle) {
   const auto from_center = [&](std::size_t i) -> Vector2 { return points[i] - circle.center; };
   circle.angles.assign(1, 0);
+  double squares = 0;
   for (std::size_t i = 1; i < points.size(); ++i) {
     const Vector2 a = from_center(i - 1);
     const Vector2 b = from_center(i);
@@ -77,10 +78,13 @@ bool goes_round(std::span<const Point2> points, double limit, CircleFit& circle)
     const bool is_other_way = i > 1 && turn * circle.angles.back() <= 0;
     if (is_other_way || turn == 0) return false;
     circle.angles.push_back(circle.angles.back() + turn);
-    circle.deviation = std::max(circle.deviation, std::abs(b.norm() - circle.radius));
+    const double off = std::abs(b.norm() - circle.radius);
+    squares += off * off;
+    circle.deviation = std::max(circle.deviation, off);
     circle.sagitta = std::max(circle.sagitta, circle.radius * (1 - std::cos(turn / 2)));
     if (circle.deviation > limit || circle.sagitta > limit) return false;
   }
+  circle.rms = std::sqrt(squares / static_cast<double>(points.size()));
   return std::abs(circle.angles.back()) <= 2 * kPi * (1 + kSameDirection);
 }
 

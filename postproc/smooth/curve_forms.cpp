@@ -110,9 +110,7 @@ class CurveForms {
 
  private:
   [[nodiscard]] const RunFacts& facts() const { return result_.facts; }
-  [[nodiscard]] double distance_before() const {
-    return std::max(facts().off, facts().scale.near);
-  }
+  [[nodiscard]] double distance_before() const { return std::max(facts().off, facts().scale.near); }
 
   [[nodiscard]] bool has_form(Form form) const {
     return std::ranges::any_of(result_.candidates,
@@ -263,8 +261,10 @@ class CurveForms {
     candidate->method = name_of(curve_.method);
     candidate->max_curvature = bends_.greatest();
     candidate->rounds_seam = curve_.path.rounds_seam && !offer.around_vertices;
-    candidate->figures.distance =
-        std::hypot(setting_.meant.distance_of(plan->moves, curve_.path), facts().scale.printed);
+    // A circle that all points are on, but for their rounding, was meant: the curve is off it.
+    const bool was_meant = plan->off_circle && *plan->off_circle <= facts().rounded;
+    const double off = was_meant ? 0 : setting_.meant.distance_of(plan->moves, curve_.path);
+    candidate->figures.distance = std::hypot(off, facts().scale.printed);
     if (task_.scope == CandidateScope::kToRepeat) candidate->plan = plan;
     return candidate;
   }

@@ -135,9 +135,8 @@ class RunSmoother {
     }
     // A form is printed, and so were the vertices. The curve leaves a part of that; those that
     // scatter less are exact in fewer decimals than they could have.
-    const double seen = fair_->noise / kBounds.rounding_left;
-    facts.scale.original.distance =
-        std::hypot(facts.off, std::min(rounding_, seen) / std::sqrt(3.0));
+    facts.rounded = std::min(rounding_, fair_->noise / kBounds.rounding_left);
+    facts.scale.original.distance = std::hypot(facts.off, facts.rounded / std::sqrt(3.0));
     facts.scale.known = kBounds.known * fair_->noise;
   }
 

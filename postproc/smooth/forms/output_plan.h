@@ -40,6 +40,7 @@ struct OutputPlan {
   std::vector<PlannedCurve> curves;         // in order
   std::vector<std::size_t> comments_after;  // of the run's last blocks
   bool chords_for_steps = false;            // see plan_lines
+  std::optional<double> off_circle;  // mm, rms of the run's points; where all moves are of one
   bool arcs_as_chords = false;  // of ours, since the target's own would leave some arcs too far
 };
 

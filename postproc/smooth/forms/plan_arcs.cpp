@@ -654,6 +654,7 @@ std::optional<OutputPlan> plan_circle_in(const Run& run, const geometry::SmoothC
     start = end;
   }
   OwnChords(run, fair, options).put_into(plan);
+  if (!plan.arcs_as_chords) plan.off_circle = circle->rms;
   place_comments(run, fair, plan);
   return plan;
 }

@@ -76,6 +76,7 @@ OutputPlan cut_in_three(const PlannedMove& move, double end, double first, doubl
 }
 
 OutputPlan without_comments(OutputPlan plan) {
+  plan.off_circle.reset();
   plan.comments_after.clear();
   for (PlannedMove& move : plan.moves) move.comments_before.clear();
   return plan;
@@ -172,9 +173,8 @@ std::vector<SlowPart> SlowParts::find(const OutputPlan& plan, std::span<const do
 std::optional<OutputPlan> SlowParts::with_run(const OutputPlan& plan,
                                               std::span<const SlowPart> parts) const {
   if (parts.empty()) return std::nullopt;
-  OutputPlan mixed = plan;
+  OutputPlan mixed = without_comments(plan);
   mixed.moves.clear();
-  mixed.comments_after.clear();
   bool has_arc = false;
   auto part = parts.begin();
   for (std::size_t i = 0; i < plan.moves.size(); ++i) {

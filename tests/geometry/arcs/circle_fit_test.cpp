@@ -64,6 +64,11 @@ TEST(FitCircle, IsNearestToRoundedPoints) {
       EXPECT_NEAR((points.back() - circle->center).norm(), circle->radius, 1e-9);
       EXPECT_LT((circle->center - round.center).norm(), std::abs(sweep) < 2 ? 0.006 : 0.0012);
       EXPECT_LT(circle->deviation, 0.0015);
+      double all = 0;
+      for (const Point2& p : points) {
+        all += std::pow((circle->center - p).norm() - circle->radius, 2);
+      }
+      EXPECT_NEAR(circle->rms, std::sqrt(all / static_cast<double>(points.size())), 1e-12);
       // Of no other centre that passes the first point the squares are less.
       const auto squares = [&](const Point2& center) {
         double sum = 0;

@@ -120,16 +120,34 @@ TEST(CurveForms, OfPartsOfCirclesAreArcs) {
   }
 }
 
-// Its vertices are rounded to more than its chords leave it. What is printed anew is no farther off
-// for that.
+// Its vertices are rounded to more than its chords leave it, and the curve follows some of that:
+// all of them are on one circle, and what is printed anew is no farther off than they are.
 TEST(CurveForms, OfADenseCircleAreArcs) {
   for (const char* target : {"fanuc", "grbl"}) {
-    SCOPED_TRACE(target);
-    const SmoothResult result =
-        smoothed(round_program(25, 2 * geometry::kPi, 3000), options_for(target));
-    EXPECT_TRUE(result.proved);
-    EXPECT_LE(result.blocks_out, 30U);
+    for (const auto& [radius, chords] : {std::pair(10.0, 400), std::pair(25.0, 3000)}) {
+      SCOPED_TRACE(testing::Message() << target << ", radius " << radius);
+      const std::string text = round_program(radius, 2 * geometry::kPi, chords);
+      const SmoothResult result = smoothed(text, options_for(target));
+      EXPECT_TRUE(result.proved);
+      EXPECT_LE(result.blocks_out, result.blocks_in - chords + 5);
+    }
   }
+}
+
+// What is left of a circle by a control that cuts arcs coarsely is chords, and those are off it.
+TEST(CurveForms, SayHowFarChordsOfACircleAreOffIt) {
+  SmoothOptions options = options_for("klipper");
+  options.output = Form::kArcs;
+  const SmoothedRun all =
+      OneRun(round_program(4, 2 * geometry::kPi, 100)).smooth(options, CandidateScope::kAll);
+  ASSERT_FALSE(all.candidates.empty());
+  std::size_t chords = 0;
+  for (const Candidate& each : all.candidates) {
+    if (!each.arcs_as_chords) continue;
+    ++chords;
+    EXPECT_GT(each.figures.distance, 2 * all.facts.scale.printed);
+  }
+  EXPECT_GT(chords, 0U);
 }
 
 }  // namespace
