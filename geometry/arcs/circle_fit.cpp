@@ -1,9 +1,9 @@
 #include "geometry/arcs/circle_fit.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 
+#include "geometry/basic/operations.h"
 #include "geometry/basic/rounding.h"
 
 namespace batten::geometry {
@@ -80,9 +80,8 @@ bool goes_round(std::span<const Point2> points, double limit, CircleFit& circle)
     circle.angles.push_back(circle.angles.back() + turn);
     const double off = std::abs(b.norm() - circle.radius);
     squares += off * off;
-    circle.deviation = std::max(circle.deviation, off);
-    circle.sagitta = std::max(circle.sagitta, circle.radius * (1 - std::cos(turn / 2)));
-    if (circle.deviation > limit || circle.sagitta > limit) return false;
+    const double sagitta = circle.radius * (1 - std::cos(turn / 2));
+    if (off > limit || sagitta > limit) return false;
   }
   circle.rms = std::sqrt(squares / static_cast<double>(points.size()));
   return std::abs(circle.angles.back()) <= 2 * kPi * (1 + kSameDirection);
@@ -95,12 +94,13 @@ std::optional<CircleFit> fit_circle(std::span<const Point2> points, double limit
   const std::size_t third = points.size() / 3;
   const auto center = center_through(points.front(), points[third], points[2 * third]);
   if (!center) return std::nullopt;
-  // Far most paths are no circle, and some of their points show it.
+  // Most paths are no circle, and a few of their points show it.
   const double radius = (*center - points.front()).norm();
   for (std::size_t k = 1; k <= 8; ++k) {
     const Point2& p = points[k * (points.size() - 1) / 8];
     if (std::abs((*center - p).norm() - radius) > 8 * limit) return std::nullopt;
   }
+  count_operations(kSteps * points.size());
   CircleSearch search(points, *center);
   for (int i = 0; i < kSteps; ++i) search.step();
   CircleFit circle;

@@ -12,9 +12,7 @@ namespace batten::geometry {
 struct CircleFit {
   Point2 center = Point2::Zero();
   double radius = 0;           // mm
-  double deviation = 0;        // mm, greatest distance of a point from the circle
   double rms = 0;              // mm, of the distances of all points
-  double sagitta = 0;          // mm, of the longest edge
   std::vector<double> angles;  // radians, of each point from the first one; above 0 where the path
                                // goes round to the left. All have the same sign and grow
 };
