@@ -17,6 +17,12 @@
 namespace batten::gcode {
 namespace {
 
+// With no more decimals than it takes for steps of so much.
+NumberFormat with_step(NumberFormat format, double step) {
+  while (format.decimals > 0 && std::pow(10.0, 1 - format.decimals) <= step) --format.decimals;
+  return format;
+}
+
 using geometry::Point3;
 
 const PlaneAxes& arc_plane(const geometry::Vector3& axis) {
@@ -305,8 +311,10 @@ void Writer::print_center(const Point3& wanted, double sweep, PrintedArc& printe
   printed.turn_about(center, start, end, sweep, unit_);
 }
 
-// The radius in the program's units; then the centre that it says, and the sweep. False where R
-// would not say the arc: half a turn and more, or ends further apart than the printed diameter.
+// The radius in the program's units; then the centre that it says, and the sweep. A step of it
+// turns the ends of the arc by no more than a fifth of what a step of their places does. False
+// where R would not say the arc: half a turn and more, or ends further apart than the printed
+// diameter.
 bool Writer::print_radius(const Point3& wanted, double sweep, PrintedArc& printed) const {
   if (!(std::abs(sweep) < std::numbers::pi)) return false;
   const PlaneAxes& plane = printed.plane;
@@ -318,8 +326,11 @@ bool Writer::print_radius(const Point3& wanted, double sweep, PrintedArc& printe
   const PlanePoint middle = start + half;
   const double height = (in_plane(wanted, plane) / unit_ - middle).dot(along);
 
+  const double wanted_radius = std::hypot(height, half.norm());
+  const double matters = 0.1 * wanted_radius * std::abs(height) / half.squaredNorm();
   printed.radius =
-      to_text(std::hypot(height, half.norm()), center_format(control_, state_.modal.units));
+      to_text(wanted_radius, with_step(center_format(control_, state_.modal.units),
+                                       matters * std::pow(10.0, -coordinates_.decimals)));
   const double radius = read_number(printed.radius)->value;
   if (!(radius > half.norm())) return false;
   // The centre of a short counter-clockwise arc lies to the left of its chord.

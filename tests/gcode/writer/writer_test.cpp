@@ -160,6 +160,29 @@ TEST(Writer, SaysShortArcsByTheirRadius) {
   }
 }
 
+// The ends of an arc are turned by their own rounding, and by that of R a fifth as much at most.
+TEST(Writer, SaysRadiiInTheDigitsThatMatter) {
+  const auto text_and_turn = [](double radius, double sweep) {
+    Writer out = writer_at("linuxcnc", cutting_in(Units::kMillimetre), Point3(radius, 0, 0));
+    const auto arc =
+        out.arc_to(arc_round({radius, 0, 0}, {0, 0, 0}, Vector3::UnitZ(), sweep), 1000);
+    EXPECT_TRUE(arc);
+    const double half = (arc->end - arc->start).norm() / 2;
+    const double turn = std::asin(half / geometry::radius_of(*arc)) - std::asin(half / radius);
+    return std::pair(out.text(), turn * 2 * half);
+  };
+  EXPECT_EQ(text_and_turn(123.456789, 0.004).first, "G3 X123.4558 Y0.4938 R123\n");
+  EXPECT_EQ(text_and_turn(12.3456789, 0.04).first, "G3 X12.3358 Y0.4937 R12.35\n");
+  EXPECT_EQ(text_and_turn(1.23456789, 0.9).first, "G3 X0.7674 Y0.9671 R1.23457\n");
+  constexpr double kStep = 1e-4;
+  for (double radius = 0.3; radius < 500; radius *= 1.37) {
+    for (double sweep = 0.5 / radius; sweep > 0.002; sweep /= 2) {
+      if (sweep > 1) continue;
+      EXPECT_LE(std::abs(text_and_turn(radius, sweep).second), 0.2 * kStep / 2) << radius;
+    }
+  }
+}
+
 TEST(Writer, WritesAbsoluteCentersWhereTheProgramSaysSo) {
   ModalState modal = cutting_in(Units::kMillimetre);
   modal.arc_distance = DistanceMode::kAbsolute;
