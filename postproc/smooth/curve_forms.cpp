@@ -152,8 +152,8 @@ class CurveForms {
   }
 
   // The last candidate again, with the run where it is slower: at its ends, or else everywhere, and
-  // only as much of it as it takes; where it is slower then by no more than a period, or one for
-  // each end. Not of a form that is asked for by name.
+  // only as much of it as it takes; where it is slower then by next to nothing. Not of a form that
+  // is asked for by name.
   void put_run_where_slower(Offer offer) {
     const Figures slower = result_.candidates.back().figures;
     if (offer.form == Form::kCurves || !task_.run.bends.empty()) return;
@@ -176,9 +176,9 @@ class CurveForms {
     if (!candidate) return false;
     candidate->has_run_in_place = where != RunInPlace::kAtEnds;
     const CostScale& scale = facts().scale;
-    const double most =
-        scale.original.times.programmed + (where == RunInPlace::kAtEnds ? 2 : 1) * scale.period;
-    if (candidate->figures.times.programmed > most) return false;
+    const double before = scale.original.times.programmed;
+    const double more = std::max(scale.period, kCost.mended * before);
+    if (candidate->figures.times.programmed > before + more) return false;
     result_.candidates.push_back(std::move(*candidate));
     return true;
   }

@@ -115,7 +115,7 @@ class SlowParts::Search {
   // The part, or a wider one that does not begin before `begin`; nothing where the plan is faster.
   [[nodiscard]] std::optional<SlowPart> fastest(SlowPart part, std::size_t begin) const {
     std::optional<SlowPart> best;
-    for (std::size_t i = 0; i <= kSlowParts.wider_by && has_one_feed(part); ++i) {
+    for (std::size_t i = 0; i <= kSlowParts.wider_by; ++i) {
       part.won = won_by(part);
       if (part.won > (best ? best->won : 0)) best = part;
       if (part.first > begin) --part.first;
@@ -125,14 +125,6 @@ class SlowParts::Search {
   }
 
  private:
-  [[nodiscard]] bool has_one_feed(const SlowPart& part) const {
-    const double feed = plan_.moves[part.first].feed;
-    for (std::size_t i = part.first; i <= part.last; ++i) {
-      if (plan_.moves[i].feed != feed) return false;
-    }
-    return true;
-  }
-
   // s, from rest some moves before the part to rest some behind it.
   [[nodiscard]] double won_by(const SlowPart& part) const {
     const std::size_t first = part.first - std::min(part.first, kSlowParts.timed_beside);
@@ -198,17 +190,27 @@ double SlowParts::way_to_feed(double feed) const {
   return std::pow(feed / 60, 2) / (2 * limits_of(machine_, feed).acceleration.minCoeff());
 }
 
+// Up to a vertex of the run, which is that far from the end; past the half of the move only as far
+// as it takes to come to the feed, and nothing where that is past it, too.
+std::optional<double> SlowParts::way_of_run(double to_vertex, double feed, double length) const {
+  const double most = kSlowParts.of_arc * length;
+  const double way = to_vertex <= most ? to_vertex : way_to_feed(feed);
+  if (way > most) return std::nullopt;
+  return way;
+}
+
 bool SlowParts::begins_with_run(OutputPlan& plan) const {
   const PlannedMove& move = plan.moves.front();
   const double end = end_of(plan, 0, fair_.curve);
   const auto vertex =
       std::ranges::lower_bound(fair_.vertex_parameters, move.start + way_to_feed(move.feed));
   if (!is_arc(move) || vertex == fair_.vertex_parameters.end()) return false;
-  const double way = *vertex - move.start;
-  if (way > kSlowParts.of_arc * (end - move.start)) return false;
-  const double left = end - *vertex;
-  const double second = *vertex + std::min(kSlowParts.short_arc * way, kSlowParts.of_arc * left);
-  const OutputPlan cut = cut_in_three(move, end, *vertex, second);
+  const auto way = way_of_run(*vertex - move.start, move.feed, end - move.start);
+  if (!way) return false;
+  const double first = move.start + *way;
+  const double second =
+      first + std::min(kSlowParts.short_arc * *way, kSlowParts.of_arc * (end - first));
+  const OutputPlan cut = cut_in_three(move, end, first, second);
   std::vector<PlannedMove> moves;
   append_run(cut, {0, 0}, moves);
   moves.insert(moves.end(), cut.moves.begin() + 1, cut.moves.end());
@@ -223,11 +225,11 @@ bool SlowParts::ends_with_run(OutputPlan& plan) const {
   const auto after =
       std::ranges::upper_bound(fair_.vertex_parameters, end - way_to_feed(move.feed));
   if (!is_arc(move) || after == fair_.vertex_parameters.begin()) return false;
-  const double second = *(after - 1);
-  const double way = end - second;
-  if (way > kSlowParts.of_arc * (end - move.start)) return false;
-  const double left = second - move.start;
-  const double first = second - std::min(kSlowParts.short_arc * way, kSlowParts.of_arc * left);
+  const auto way = way_of_run(end - *(after - 1), move.feed, end - move.start);
+  if (!way) return false;
+  const double second = end - *way;
+  const double first =
+      second - std::min(kSlowParts.short_arc * *way, kSlowParts.of_arc * (second - move.start));
   const OutputPlan cut = cut_in_three(move, end, first, second);
   plan.moves.back() = cut.moves[0];
   plan.moves.push_back(cut.moves[1]);
@@ -243,23 +245,24 @@ std::optional<OutputPlan> SlowParts::with_run_at_ends(const OutputPlan& plan) co
   return mixed;
 }
 
-// From where the part starts to where it ends, past the vertices between.
+// From where the part starts to where it ends, past the vertices between, at the feeds of its
+// moves.
 void SlowParts::append_run(const OutputPlan& plan, const SlowPart& part,
                            std::vector<PlannedMove>& moves) const {
-  const PlannedMove& first = plan.moves[part.first];
-  const Point3 to = geometry::end_point(plan.moves[part.last].piece);
-  const double end = end_of(plan, part.last, fair_.curve);
   const auto& at = fair_.vertex_parameters;
-  Point3 place = geometry::start_point(first.piece);
-  double parameter = first.start;
-  auto next = static_cast<std::size_t>(std::ranges::upper_bound(at, first.start) - at.begin());
-  for (; next < at.size() && at[next] < end; ++next) {
-    const Point3& vertex = run_.points[next];
-    moves.push_back({geometry::Line{place, vertex}, first.feed, {}, parameter});
-    place = vertex;
-    parameter = at[next];
-  }
-  moves.push_back({geometry::Line{place, to}, first.feed, {}, parameter});
+  const double end = end_of(plan, part.last, fair_.curve);
+  std::size_t move = part.first;
+  double parameter = plan.moves[move].start;
+  Point3 place = geometry::start_point(plan.moves[move].piece);
+  const auto append = [&](const Point3& to, double next) {
+    while (move < part.last && plan.moves[move + 1].start < (parameter + next) / 2) ++move;
+    moves.push_back({geometry::Line{place, to}, plan.moves[move].feed, {}, parameter});
+    place = to;
+    parameter = next;
+  };
+  auto next = static_cast<std::size_t>(std::ranges::upper_bound(at, parameter) - at.begin());
+  for (; next < at.size() && at[next] < end; ++next) append(run_.points[next], at[next]);
+  append(geometry::end_point(plan.moves[part.last].piece), end);
 }
 
 std::vector<SlowPart> enough_of(std::vector<SlowPart> parts, double seconds) {

@@ -182,6 +182,39 @@ TEST(SlowParts, GiveTheEndsOfArcsToTheRun) {
   EXPECT_FALSE(straight.parts(machine).with_run_at_ends(straight.plan));
 }
 
+// 5 mm/s take 0.025 mm; one chord of 0.6 mm is all of the arc.
+TEST(SlowParts, GiveAPartOfALongChordToTheEndsOfArcs) {
+  BentPath path({0.4}, false);
+  for (PlannedMove& move : path.plan.moves) move.feed = 300;
+  const auto mixed = path.parts(*find_machine("linuxcnc")).with_run_at_ends(path.plan);
+  ASSERT_TRUE(mixed);
+  expect_path_of(*mixed, path.run);
+  ASSERT_EQ(mixed->moves.size(), 5U);
+  for (const std::size_t i : {0, 4}) {
+    ASSERT_TRUE(std::holds_alternative<Line>(mixed->moves[i].piece));
+    EXPECT_NEAR(geometry::length_of(mixed->moves[i].piece), 0.025, 0.001);
+  }
+  EXPECT_EQ(count_of_arcs(*mixed), 3U);
+}
+
+TEST(SlowParts, HaveTheFeedsOfThePlan) {
+  BentPath path({15, 12});
+  auto& moves = path.plan.moves;
+  ASSERT_EQ(moves.size(), 5U);
+  for (std::size_t i = 2; i < moves.size(); ++i) moves[i].feed = kFeed / 2;
+  const std::vector<SlowPart> part = {{1, 2, 1.0}};
+  const auto mixed = path.parts(*find_machine("linuxcnc")).with_run(path.plan, part);
+  ASSERT_TRUE(mixed);
+  expect_path_of(*mixed, path.run);
+  for (const PlannedMove& move : mixed->moves) {
+    // The edge of the run across the change has the feed on the most of it.
+    const double away = move.start - moves[2].start;
+    if (std::abs(away) > 0.7) {
+      EXPECT_EQ(move.feed, away < 0 ? kFeed : kFeed / 2) << away;
+    }
+  }
+}
+
 TEST(SlowParts, OfTheRunItselfAreNone) {
   const BentPath path({15, 0.5, 12});
   OutputPlan same;
