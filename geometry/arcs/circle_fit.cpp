@@ -10,7 +10,6 @@ namespace batten::geometry {
 
 namespace {
 
-constexpr std::size_t kFewest = 5;
 constexpr int kSteps = 6;  // of Gauss-Newton, from a circle through three of the points
 
 // Nothing where they are on one line.
@@ -67,7 +66,7 @@ class CircleSearch {
   bool is_closed_ = false;
 };
 
-bool goes_round(std::span<const Point2> points, double limit, CircleFit& circle) {
+bool goes_round(std::span<const Point2> points, const CircleLimits& limits, CircleFit& circle) {
   const auto from_center = [&](std::size_t i) -> Vector2 { return points[i] - circle.center; };
   circle.angles.assign(1, 0);
   double squares = 0;
@@ -81,7 +80,7 @@ bool goes_round(std::span<const Point2> points, double limit, CircleFit& circle)
     const double off = std::abs(b.norm() - circle.radius);
     squares += off * off;
     const double sagitta = circle.radius * (1 - std::cos(turn / 2));
-    if (off > limit || sagitta > limit) return false;
+    if (off > limits.off || sagitta > limits.chord) return false;
   }
   circle.rms = std::sqrt(squares / static_cast<double>(points.size()));
   return std::abs(circle.angles.back()) <= 2 * kPi * (1 + kSameDirection);
@@ -89,8 +88,8 @@ bool goes_round(std::span<const Point2> points, double limit, CircleFit& circle)
 
 }  // namespace
 
-std::optional<CircleFit> fit_circle(std::span<const Point2> points, double limit) {
-  if (points.size() < kFewest) return std::nullopt;
+std::optional<CircleFit> fit_circle(std::span<const Point2> points, const CircleLimits& limits) {
+  if (points.size() < kFewestOnCircle) return std::nullopt;
   const std::size_t third = points.size() / 3;
   const auto center = center_through(points.front(), points[third], points[2 * third]);
   if (!center) return std::nullopt;
@@ -98,7 +97,7 @@ std::optional<CircleFit> fit_circle(std::span<const Point2> points, double limit
   const double radius = (*center - points.front()).norm();
   for (std::size_t k = 1; k <= 8; ++k) {
     const Point2& p = points[k * (points.size() - 1) / 8];
-    if (std::abs((*center - p).norm() - radius) > 8 * limit) return std::nullopt;
+    if (std::abs((*center - p).norm() - radius) > 8 * limits.off) return std::nullopt;
   }
   count_operations(kSteps * points.size());
   CircleSearch search(points, *center);
@@ -106,7 +105,7 @@ std::optional<CircleFit> fit_circle(std::span<const Point2> points, double limit
   CircleFit circle;
   circle.center = search.center();
   circle.radius = (circle.center - points.front()).norm();
-  if (!goes_round(points, limit, circle)) return std::nullopt;
+  if (!goes_round(points, limits, circle)) return std::nullopt;
   return circle;
 }
 

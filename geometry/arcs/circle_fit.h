@@ -1,6 +1,7 @@
 // The circle that a path of points follows from end to end.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <vector>
@@ -17,10 +18,18 @@ struct CircleFit {
                                // goes round to the left. All have the same sign and grow
 };
 
+constexpr std::size_t kFewestOnCircle = 5;  // points
+
+struct CircleLimits {
+  double off = 0;    // mm: points from the circle, at most
+  double chord = 0;  // mm: edges from it, at most
+};
+
 // The circle through the first point and the last one, which may be the same, that is nearest to
-// all points in least squares (Gauss-Newton). Nothing for fewer than five points, where one is
-// farther from it than `limit` (mm), where an edge leaves it by more, or where the points do not
-// go along it in one sense, once round at most. `points`: mm.
-[[nodiscard]] std::optional<CircleFit> fit_circle(std::span<const Point2> points, double limit);
+// all points in least squares (Gauss-Newton). Nothing for fewer than kFewestOnCircle points, where
+// one of them or an edge is farther from it than these limits, or where the points do not go along
+// it in one sense, once round at most. `points`: mm.
+[[nodiscard]] std::optional<CircleFit> fit_circle(std::span<const Point2> points,
+                                                  const CircleLimits& limits);
 
 }  // namespace batten::geometry

@@ -68,7 +68,7 @@ struct Offer {
   double blocks = 0;    // about
   double distance = 0;  // mm, rms from the path that was meant
   PlanOptions options;
-  bool around_vertices = false;  // arcs
+  ArcsAlong arcs = ArcsAlong::kCurve;
 };
 
 // Of the offer that was made last: its plan, and what of it is slow.
@@ -101,7 +101,7 @@ class CurveForms {
       make_best();
       if (has_form(Form::kCurves)) return;
     }
-    if (wanted != Form::kLines && is_fair && is_first_) offer_circle();
+    if (wanted != Form::kLines && is_fair && is_first_) offer_line_arcs();
     if (wanted != Form::kLines) offer_arcs();
     if (wanted != Form::kLines && is_fair && is_first_) offer_arc_splines();
     if (wanted != Form::kArcs) offer_lines();
@@ -170,14 +170,16 @@ class CurveForms {
     }
   }
 
+  // Where it is as fast as the run, but for next to nothing. What was meant may be slower by as much
+  // as any form.
   bool is_added_with_run(Offer offer, RunInPlace where) {
     offer.options.run_in_place = where;
     auto candidate = made(offer);
     if (!candidate) return false;
     candidate->has_run_in_place = where != RunInPlace::kAtEnds;
-    const CostScale& scale = facts().scale;
-    const double before = scale.original.times.programmed;
-    const double more = std::max(scale.period, kCost.mended * before);
+    const double before = facts().scale.original.times.programmed;
+    const double part = offer.arcs == ArcsAlong::kVertices ? kCost.longer : kCost.mended;
+    const double more = std::max(facts().scale.period, part * before);
     if (candidate->figures.times.programmed > before + more) return false;
     result_.candidates.push_back(std::move(*candidate));
     return true;
@@ -221,7 +223,7 @@ class CurveForms {
 
   [[nodiscard]] std::optional<Candidate> made(const Offer& offer) {
     if (task_.memo == nullptr) return newly_made(offer);
-    const RunMemo::PlanKey key{curve_.number, offer.form, offer.around_vertices, offer.options};
+    const RunMemo::PlanKey key{curve_.number, offer.form, offer.arcs, offer.options};
     return task_.memo->candidates.get(key, [&](std::size_t) {
       auto candidate = newly_made(offer);
       if (candidate) candidate->text.text.clear();
@@ -234,9 +236,15 @@ class CurveForms {
     if (offer.options.run_in_place != RunInPlace::kNowhere) return with_run_in(offer);
     if (offer.form == Form::kCurves) return plan_curves(run, curve_.path, offer.options);
     if (offer.form == Form::kLines) return plan_lines(run, curve_.path, pieces_, offer.options);
-    if (offer.options.one_circle) return plan_circle(run, curve_.path, offer.options);
-    return offer.around_vertices ? plan_arc_spline(run, curve_.path, offer.options)
-                                 : plan_arcs(run, curve_.path, pieces_, bends_, offer.options);
+    switch (offer.arcs) {
+      case ArcsAlong::kVertices:
+        return plan_line_arcs(setting_.shape.value(), run, curve_.path, offer.options);
+      case ArcsAlong::kBand:
+        return plan_arc_spline(run, curve_.path, offer.options);
+      case ArcsAlong::kCurve:
+        break;
+    }
+    return plan_arcs(run, curve_.path, pieces_, bends_, offer.options);
   }
 
   [[nodiscard]] std::optional<OutputPlan> with_run_in(Offer offer) {
@@ -260,10 +268,8 @@ class CurveForms {
     if (!candidate) return std::nullopt;
     candidate->method = name_of(curve_.method);
     candidate->max_curvature = bends_.greatest();
-    candidate->rounds_seam = curve_.path.rounds_seam && !offer.around_vertices;
-    // A circle that all points are on, but for their rounding, was meant: the curve is off it.
-    const bool was_meant = plan->off_circle && *plan->off_circle <= facts().rounded;
-    const double off = was_meant ? 0 : setting_.meant.distance_of(plan->moves, curve_.path);
+    candidate->rounds_seam = curve_.path.rounds_seam && offer.arcs == ArcsAlong::kCurve;
+    const double off = setting_.meant.distance_of(plan->moves, curve_.path);
     candidate->figures.distance = std::hypot(off, facts().scale.printed);
     if (task_.scope == CandidateScope::kToRepeat) candidate->plan = plan;
     return candidate;
@@ -344,12 +350,10 @@ class CurveForms {
     }
   }
 
-  void offer_circle() {
-    if (one_sided_) return;
+  void offer_line_arcs() {
+    if (one_sided_ || !setting_.shape) return;
     const double whole = left_ + curve_.path.deviation;
-    PlanOptions plan = arcs_within(whole, whole);
-    plan.one_circle = true;
-    offers_.push_back({Form::kArcs, 0, 0, plan, true});
+    offers_.push_back({Form::kArcs, 0, 0, arcs_within(whole, whole), ArcsAlong::kVertices});
   }
 
   // Arcs in the band around the vertices themselves. Of arcs no more should come than there were:
@@ -365,7 +369,7 @@ class CurveForms {
       band.outside = whole - std::min(kFormTuning.for_control * whole,
                                       gcode::usual_chord_error(task_.options.target->chords));
       if (few) band.arc_effort = geometry::ArcEffort::kThorough;
-      offers_.push_back({Form::kArcs, 0, 0, band, true});
+      offers_.push_back({Form::kArcs, 0, 0, band, ArcsAlong::kBand});
       if (task_.run.bends.empty()) return;
     }
   }

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 
+#include "postproc/smooth/forms/line_arcs.h"
 #include "postproc/smooth/forms/output_plan.h"
 #include "postproc/smooth/methods/run_curve.h"
 #include "postproc/smooth/selection/candidate.h"
@@ -48,6 +49,7 @@ struct FormSetting {
   const RunTimes& times;
   const CandidateBounds& bounds;
   const MeantPath& meant;
+  const std::optional<LineArcs>& shape;  // of the run
   const RunBudget& budget;
 };
 

@@ -117,27 +117,35 @@ class RunSmoother {
     return request;
   }
 
-  // The path that was meant is the curve through the vertices. Where chords take much of the
+  // The path that was meant is what the vertices are on, where that is lines and arcs, and else the
+  // curve through them. Where chords take much of the
   // tolerance, the fair curve has to run between vertices and chords: then it is fitted once more,
   // with more room.
   void find_meant(const geometry::SmoothCurve& fair, CurveRequest request) {
     fair_ = fair;
-    meant_.emplace(*fair_);
     RunFacts& facts = result_.facts;
     facts.noise = fair.noise;
     facts.fair_curvature = CurvatureProfile(fair.curve).greatest();
+    const double within = (1 - kPlans.arc_chords) * (shares_.smoothing + shares_.form);
+    shape_ = line_arcs_of(run(), within, rounded());
+    const bool is_known = shape_ && shape_->is_certain;
+    meant_.emplace(*fair_, is_known ? moves_along(*shape_, run(), *fair_) : MeantPath::Moves());
     facts.off = meant_->distance_of(run());
-    if (facts.off > kRun.takes_much * request.tolerance) {
+    if (!is_known && facts.off > kRun.takes_much * request.tolerance) {
       request.tolerance *= kRun.more_room;
       const auto through = curve_by(Method::kFair, request);
       if (through) fair_ = through->path;
       facts.off = meant_->distance_of(run());
     }
-    // A form is printed, and so were the vertices. The curve leaves a part of that; those that
-    // scatter less are exact in fewer decimals than they could have.
-    facts.rounded = std::min(rounding_, fair_->noise / kBounds.rounding_left);
-    facts.scale.original.distance = std::hypot(facts.off, facts.rounded / std::sqrt(3.0));
+    // A form is printed, and so were the vertices.
+    facts.scale.original.distance = std::hypot(facts.off, rounded() / std::sqrt(3.0));
     facts.scale.known = kBounds.known * fair_->noise;
+  }
+
+  // mm, greatest rounding error that the vertices show. The curve leaves a part of it; those that
+  // scatter less are exact in fewer decimals than they could have.
+  [[nodiscard]] double rounded() const {
+    return std::min(rounding_, fair_->noise / kBounds.rounding_left);
   }
 
   [[nodiscard]] std::optional<RunCurve> curve_by(Method method, const CurveRequest& request) const {
@@ -171,7 +179,7 @@ class RunSmoother {
     if (!(left > 0)) return;
     fits_ = true;
     const CurvatureProfile bends(curve.path.curve);
-    add_forms({task_, times_, bounds_, *meant_, budget_},
+    add_forms({task_, times_, bounds_, *meant_, shape_, budget_},
               {curve, bends, shares_.form, left, is_first_}, result_);
     is_first_ = false;
   }
@@ -284,6 +292,7 @@ class RunSmoother {
   RunBudget budget_;
   std::optional<geometry::SmoothCurve> fair_;
   std::optional<MeantPath> meant_;
+  std::optional<LineArcs> shape_;
   bool is_first_ = true;  // the next curve that candidates are made of
   bool fits_ = false;     // a method found a curve inside the tolerance
   SmoothedRun& result_;

@@ -40,12 +40,15 @@ struct OutputPlan {
   std::vector<PlannedCurve> curves;         // in order
   std::vector<std::size_t> comments_after;  // of the run's last blocks
   bool chords_for_steps = false;            // see plan_lines
-  std::optional<double> off_circle;  // mm, rms of the run's points; where all moves are of one
   bool arcs_as_chords = false;  // of ours, since the target's own would leave some arcs too far
 };
 
 // Where the run stands in place of lines and arcs (slow_parts.h).
 enum class RunInPlace : std::uint8_t { kNowhere, kAtEnds, kWhereNeeded, kEverywhere };
+
+// What arcs follow: the curve (plan_arcs), the band around the vertices (plan_arc_spline), or the
+// vertices themselves (line_arcs.h).
+enum class ArcsAlong : std::uint8_t { kCurve, kBand, kVertices };
 
 struct PlanOptions {
   const gcode::Control* target = nullptr;
@@ -66,7 +69,6 @@ struct PlanOptions {
   // minlink: about as many lines, made quickly for their number.
   bool counted = false;
   RunInPlace run_in_place = RunInPlace::kNowhere;
-  bool one_circle = false;  // arcs by plan_circle
   // More arcs than this are not looked for.
   std::size_t most_arcs = std::numeric_limits<std::size_t>::max();
   // mm, moves to run. Of lines, where max_deviation is not to be the same everywhere; of arcs, with
@@ -92,7 +94,6 @@ struct PlanTuning {
   int newton_steps = 3;         // to the parameter of an end, from about the right one
   double reversal = 170 * geometry::kPi / 180;  // greater turns stay: see geometry::find_features
   double no_corner = 1e-3;  // radians between the two ends of a closed run that make no corner
-  double circle_arc = 2 * geometry::kPi / 3;  // radians, of an arc of one circle at the most
   // Curves.
   double long_line = 5;       // mm: a shorter straight part is not worth an end and a new start
   double curve_chords = 0.1;  // kept for chords in place of pieces that the target does not take
@@ -144,13 +145,6 @@ inline constexpr PlanTuning kPlans;
 [[nodiscard]] std::optional<OutputPlan> plan_arc_spline(const Run& run,
                                                         const geometry::SmoothCurve& fair,
                                                         const PlanOptions& options);
-
-// Arcs of one circle, which the run follows from end to end within max_deviation, in a plane that
-// the target takes arcs in. Nothing for other runs, for those that have bends or several feeds, and
-// where the target takes no such arc.
-[[nodiscard]] std::optional<OutputPlan> plan_circle(const Run& run,
-                                                    const geometry::SmoothCurve& fair,
-                                                    const PlanOptions& options);
 
 // Curves of the target, on few control points: the curve is fitted anew within max_deviation where
 // that takes fewer. Long straight parts are lines, and so is what the target does not take as a

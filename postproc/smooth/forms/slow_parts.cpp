@@ -76,7 +76,6 @@ OutputPlan cut_in_three(const PlannedMove& move, double end, double first, doubl
 }
 
 OutputPlan without_comments(OutputPlan plan) {
-  plan.off_circle.reset();
   plan.comments_after.clear();
   for (PlannedMove& move : plan.moves) move.comments_before.clear();
   return plan;
@@ -190,26 +189,14 @@ double SlowParts::way_to_feed(double feed) const {
   return std::pow(feed / 60, 2) / (2 * limits_of(machine_, feed).acceleration.minCoeff());
 }
 
-// Up to a vertex of the run, which is that far from the end; past the half of the move only as far
-// as it takes to come to the feed, and nothing where that is past it, too.
-std::optional<double> SlowParts::way_of_run(double to_vertex, double feed, double length) const {
-  const double most = kSlowParts.of_arc * length;
-  const double way = to_vertex <= most ? to_vertex : way_to_feed(feed);
-  if (way > most) return std::nullopt;
-  return way;
-}
-
 bool SlowParts::begins_with_run(OutputPlan& plan) const {
   const PlannedMove& move = plan.moves.front();
   const double end = end_of(plan, 0, fair_.curve);
-  const auto vertex =
-      std::ranges::lower_bound(fair_.vertex_parameters, move.start + way_to_feed(move.feed));
-  if (!is_arc(move) || vertex == fair_.vertex_parameters.end()) return false;
-  const auto way = way_of_run(*vertex - move.start, move.feed, end - move.start);
-  if (!way) return false;
-  const double first = move.start + *way;
+  const double way = way_to_feed(move.feed);
+  if (!is_arc(move) || way > kSlowParts.of_arc * (end - move.start)) return false;
+  const double first = move.start + way;
   const double second =
-      first + std::min(kSlowParts.short_arc * *way, kSlowParts.of_arc * (end - first));
+      first + std::min(kSlowParts.short_arc * way, kSlowParts.of_arc * (end - first));
   const OutputPlan cut = cut_in_three(move, end, first, second);
   std::vector<PlannedMove> moves;
   append_run(cut, {0, 0}, moves);
@@ -222,14 +209,11 @@ bool SlowParts::begins_with_run(OutputPlan& plan) const {
 bool SlowParts::ends_with_run(OutputPlan& plan) const {
   const PlannedMove move = plan.moves.back();
   const double end = fair_.curve.last();
-  const auto after =
-      std::ranges::upper_bound(fair_.vertex_parameters, end - way_to_feed(move.feed));
-  if (!is_arc(move) || after == fair_.vertex_parameters.begin()) return false;
-  const auto way = way_of_run(end - *(after - 1), move.feed, end - move.start);
-  if (!way) return false;
-  const double second = end - *way;
+  const double way = way_to_feed(move.feed);
+  if (!is_arc(move) || way > kSlowParts.of_arc * (end - move.start)) return false;
+  const double second = end - way;
   const double first =
-      second - std::min(kSlowParts.short_arc * *way, kSlowParts.of_arc * (second - move.start));
+      second - std::min(kSlowParts.short_arc * way, kSlowParts.of_arc * (second - move.start));
   const OutputPlan cut = cut_in_three(move, end, first, second);
   plan.moves.back() = cut.moves[0];
   plan.moves.push_back(cut.moves[1]);

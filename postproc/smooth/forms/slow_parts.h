@@ -45,8 +45,7 @@ class SlowParts {
 
   // The plan with the run where it begins and ends by arcs, for the way from rest to the feed, and
   // a short arc between that and the rest of each: what the control makes of the joint slows a
-  // whole move. Of a run in chords that are longer than that a part of one. Nothing where the plan
-  // has no such arc, or none that is long enough.
+  // whole move. Nothing where the plan has no such arc, or none that is long enough.
   [[nodiscard]] std::optional<OutputPlan> with_run_at_ends(const OutputPlan& plan) const;
 
   // The plan with the run in place of those parts. Nothing where there are none, or no arc is left
@@ -58,8 +57,6 @@ class SlowParts {
   class Search;
 
   [[nodiscard]] double way_to_feed(double feed) const;
-  [[nodiscard]] std::optional<double> way_of_run(double to_vertex, double feed,
-                                                 double length) const;
   [[nodiscard]] bool begins_with_run(OutputPlan& plan) const;
   [[nodiscard]] bool ends_with_run(OutputPlan& plan) const;
   void append_run(const OutputPlan& plan, const SlowPart& part,

@@ -67,7 +67,6 @@ struct RunFacts {             // whether it is rewritten or not
   double off = 0;             // mm, rms distance of its vertices' path from the one that was meant
   double max_curvature = 0;   // 1/mm, circle through three neighbouring vertices
   double noise = 0;           // mm, rms distance of the vertices from the fair curve
-  double rounded = 0;         // mm, greatest rounding error that the vertices show
   double coarse = 0;          // part of its vertices (coarse_part)
   double fair_curvature = 0;  // 1/mm, greatest of the fair curve
 };
@@ -105,8 +104,8 @@ struct RunMemo {
   // What differs between the requests of one run.
   using CurveKey = std::tuple<Method, double, double, double, double, bool, bool>;
   Made<CurveKey, std::optional<RunCurve>> curves;
-  // Of which curve, in which form, whether around the vertices, and how.
-  using PlanKey = std::tuple<std::size_t, Form, bool, PlanOptions>;
+  // Of which curve, in which form, along what, and how.
+  using PlanKey = std::tuple<std::size_t, Form, ArcsAlong, PlanOptions>;
   Made<PlanKey, std::optional<Candidate>> candidates;
 };
 

@@ -37,7 +37,7 @@ struct CostTuning {
   double rougher = 1.05;
   // Never slower. The path that was meant is longer than chords inside its bends, by about this.
   double longer = 1e-3;
-  double mended = 3e-4;  // of a form with the run where it alone would be slower, at most
+  double mended = 5e-4;      // of a form with the run where it alone would be slower, at most
   double no_time = 0.01;     // of the original's: a part of a run may take less than nothing of it
   double overridden = 0.02;  // slower at other settings of the override, at most
   // What a gain is, and what makes up for being larger or farther off.

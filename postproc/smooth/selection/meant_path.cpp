@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <variant>
 
@@ -27,13 +28,73 @@ struct Node {
 constexpr std::array<Node, 3> kNodes = {
     {{0.112701665379258, 5.0 / 18}, {0.5, 8.0 / 18}, {0.887298334620742, 5.0 / 18}}};
 
-// Adds up squared distances of pieces from a curve.
-class DistanceSum {
+// mm^2
+double squared_distance(const Point3& place, const PathPiece& piece) {
+  const Point3 start = geometry::start_point(piece);
+  const Point3 end = geometry::end_point(piece);
+  const auto* arc = std::get_if<geometry::Arc>(&piece);
+  if (arc == nullptr) return std::pow(geometry::distance_to_segment(place, start, end), 2);
+  const double least = std::min((place - start).squaredNorm(), (place - end).squaredNorm());
+  const Vector3 out = place - arc->center;
+  const double height = out.dot(arc->axis);
+  const Vector3 flat = out - height * arc->axis;
+  const Vector3 from = start - arc->center;
+  const double turn = std::atan2(from.cross(flat).dot(arc->axis), from.dot(flat));
+  const double along = arc->sweep > 0 ? turn : -turn;
+  if ((along < 0 ? along + 2 * geometry::kPi : along) > std::abs(arc->sweep)) return least;
+  return std::min(least, std::pow(flat.norm() - geometry::radius_of(*arc), 2) + height * height);
+}
+
+// The squared distance of a place (mm^2) from a curve, near to a parameter.
+class FromCurve {
  public:
-  explicit DistanceSum(const geometry::BsplineCurve& curve)
+  explicit FromCurve(const geometry::BsplineCurve& curve)
       : curve_(curve.basis().knots(), curve.control_points()),
         first_(curve.first()),
         last_(curve.last()) {}
+
+  // About a corner Newton's steps may lead away.
+  double operator()(const Point3& place, double u) {
+    double least = (curve_.point_at(u) - place).squaredNorm();
+    for (int i = 0; i < kMeantPath.steps; ++i) {
+      u = std::clamp(curve_.nearer(u, place), first_, last_);
+      least = std::min(least, (curve_.point_at(u) - place).squaredNorm());
+    }
+    return least;
+  }
+
+ private:
+  geometry::SplineWalk curve_;
+  double first_;
+  double last_;
+};
+
+// The same from moves along it.
+class FromMoves {
+ public:
+  explicit FromMoves(const std::vector<PlannedMove>& moves) : moves_(moves) {}
+
+  double operator()(const Point3& place, double u) {
+    const auto behind = std::ranges::upper_bound(moves_, u, {}, &PlannedMove::start);
+    const std::ptrdiff_t at = std::max<std::ptrdiff_t>(behind - moves_.begin() - 1, 0);
+    double least = std::numeric_limits<double>::infinity();
+    for (std::ptrdiff_t i = at - 1; i <= at + 1; ++i) {
+      if (i < 0 || i >= std::ssize(moves_)) continue;
+      const PathPiece& piece = moves_[static_cast<std::size_t>(i)].piece;
+      least = std::min(least, squared_distance(place, piece));
+    }
+    return least;
+  }
+
+ private:
+  const std::vector<PlannedMove>& moves_;
+};
+
+// Adds up squared distances of pieces.
+template <typename From>
+class DistanceSum {
+ public:
+  explicit DistanceSum(From from) : squared_(std::move(from)) {}
 
   // `from` and `to`: about the parameters of its ends.
   void add(const PathPiece& piece, double from, double to) {
@@ -44,7 +105,8 @@ class DistanceSum {
     for (int part = 0; part < parts; ++part) {
       for (const Node& node : kNodes) {
         const double t = (part + node.at) / parts;
-        squares_ += length * node.weight / parts * squared(piece, t, from + t * (to - from));
+        const double squared = squared_(geometry::point_at(piece, t), from + t * (to - from));
+        squares_ += length * node.weight / parts * squared;
       }
     }
     length_ += length;
@@ -53,20 +115,7 @@ class DistanceSum {
   [[nodiscard]] double rms() const { return length_ > 0 ? std::sqrt(squares_ / length_) : 0; }
 
  private:
-  // About a corner Newton's steps may lead away.
-  double squared(const PathPiece& piece, double t, double u) {
-    const Point3 place = geometry::point_at(piece, t);
-    double least = (curve_.point_at(u) - place).squaredNorm();
-    for (int i = 0; i < kMeantPath.steps; ++i) {
-      u = std::clamp(curve_.nearer(u, place), first_, last_);
-      least = std::min(least, (curve_.point_at(u) - place).squaredNorm());
-    }
-    return least;
-  }
-
-  geometry::SplineWalk curve_;
-  double first_;
-  double last_;
+  From squared_;
   double squares_ = 0;
   double length_ = 0;
 };
@@ -110,26 +159,39 @@ class ParameterMap {
 
 }  // namespace
 
+// `visit` is called with what adds a piece from one parameter to another.
+template <typename Visit>
+double MeantPath::rms_of(Visit visit) const {
+  if (shape_.empty()) {
+    DistanceSum sum{FromCurve(fair_.curve)};
+    visit(sum);
+    return sum.rms();
+  }
+  DistanceSum sum{FromMoves(shape_)};
+  visit(sum);
+  return sum.rms();
+}
+
 double MeantPath::distance_of(const Run& run) const {
   const std::vector<RunMotion> motions = motions_between(run, 0, run.points.size() - 1);
-  DistanceSum sum(fair_.curve);
-  for_some(motions.size(), [&](std::size_t i) {
-    const std::size_t end = i + 1 < motions.size() ? motions[i + 1].first : run.points.size() - 1;
-    sum.add(motions[i].piece, fair_.vertex_parameters[motions[i].first],
-            fair_.vertex_parameters[end]);
+  const auto& at = fair_.vertex_parameters;
+  return rms_of([&](auto& sum) {
+    for_some(motions.size(), [&](std::size_t i) {
+      const std::size_t end = i + 1 < motions.size() ? motions[i + 1].first : run.points.size() - 1;
+      sum.add(motions[i].piece, at[motions[i].first], at[end]);
+    });
   });
-  return sum.rms();
 }
 
 double MeantPath::distance_of(std::span<const PlannedMove> moves,
                               const geometry::SmoothCurve& along) const {
-  DistanceSum sum(fair_.curve);
   const ParameterMap of_fair(along.vertex_parameters, fair_.vertex_parameters);
-  for_some(moves.size(), [&](std::size_t i) {
-    const double end = i + 1 < moves.size() ? moves[i + 1].start : along.curve.last();
-    sum.add(moves[i].piece, of_fair(moves[i].start), of_fair(end));
+  return rms_of([&](auto& sum) {
+    for_some(moves.size(), [&](std::size_t i) {
+      const double end = i + 1 < moves.size() ? moves[i + 1].start : along.curve.last();
+      sum.add(moves[i].piece, of_fair(moves[i].start), of_fair(end));
+    });
   });
-  return sum.rms();
 }
 
 double roughness_of(std::span<const TimedPiece> moves) {

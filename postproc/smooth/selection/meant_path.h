@@ -3,6 +3,8 @@
 #pragma once
 
 #include <span>
+#include <utility>
+#include <vector>
 
 #include "geometry/fitting/fair/fair.h"
 #include "postproc/runs/section.h"
@@ -19,8 +21,12 @@ inline constexpr MeantPathTuning kMeantPath;
 
 class MeantPath {
  public:
+  using Moves = std::vector<PlannedMove>;
+
   // The fair curve of a run passes the vertices as near as their decimals and their noise tell.
-  explicit MeantPath(const geometry::SmoothCurve& fair) : fair_(fair) {}
+  // `shape`: moves that are known to be what was meant (line_arcs.h), along all of the curve.
+  explicit MeantPath(const geometry::SmoothCurve& fair, Moves shape = {})
+      : fair_(fair), shape_(std::move(shape)) {}
 
   // mm, rms along the path, of the run's chords and of moves that were planned along a curve
   // of the same run. Deterministic, linear in the moves up to a number of them.
@@ -29,7 +35,11 @@ class MeantPath {
                                    const geometry::SmoothCurve& along) const;
 
  private:
+  template <typename Visit>
+  [[nodiscard]] double rms_of(Visit visit) const;
+
   const geometry::SmoothCurve& fair_;
+  Moves shape_;
 };
 
 // rad/sqrt(mm), see Figures; 0 for moves of no length.

@@ -42,7 +42,7 @@ TEST(FitCircle, FindsACircleFromAnyPartOfIt) {
     SCOPED_TRACE(i);
     Round round{{of_place(chance), of_place(chance)}, 0.5 + 60 * of_size(chance), of_angle(chance)};
     round.sweep = (i % 2 == 0 ? 1 : -1) * (i % 5 == 0 ? 2 * kPi : 0.2 + 6 * of_size(chance));
-    const auto circle = fit_circle(round.points(), 0.2);
+    const auto circle = fit_circle(round.points(), {0.2, 0.2});
     ASSERT_TRUE(circle);
     EXPECT_NEAR((circle->center - round.center).norm(), 0, 1e-4);
     EXPECT_NEAR(circle->radius, round.radius, 1e-4);
@@ -57,7 +57,7 @@ TEST(FitCircle, IsNearestToRoundedPoints) {
     for (const int edges : {100, 400, 1500}) {
       Round round{.sweep = sweep, .edges = edges, .decimals = 3};
       const std::vector<Point2> points = round.points();
-      const auto circle = fit_circle(points, kLimit);
+      const auto circle = fit_circle(points, {kLimit, kLimit});
       ASSERT_TRUE(circle);
       EXPECT_NEAR((points.back() - circle->center).norm(), circle->radius, 1e-9);
       EXPECT_LT((circle->center - round.center).norm(), std::abs(sweep) < 2 ? 0.006 : 0.0012);
@@ -87,7 +87,7 @@ TEST(FitCircle, IsNearestToRoundedPoints) {
 
 TEST(FitCircle, IsNothingOfOtherPaths) {
   const auto is_circle = [](const std::vector<Point2>& points) {
-    return fit_circle(points, kLimit).has_value();
+    return fit_circle(points, {kLimit, kLimit}).has_value();
   };
   const std::vector<Point2> round = Round{}.points();
   ASSERT_TRUE(is_circle(round));

@@ -123,14 +123,50 @@ TEST(CurveForms, OfPartsOfCirclesAreArcs) {
 // Its vertices are rounded to more than its chords leave it, and the curve follows some of that:
 // all of them are on one circle, and what is printed anew is no farther off than they are.
 TEST(CurveForms, OfADenseCircleAreArcs) {
-  for (const char* target : {"fanuc", "grbl"}) {
+  for (const char* target : {"fanuc", "grbl", "linuxcnc"}) {
     for (const auto& [radius, chords] : {std::pair(10.0, 400), std::pair(25.0, 3000)}) {
       SCOPED_TRACE(testing::Message() << target << ", radius " << radius);
       const std::string text = round_program(radius, 2 * geometry::kPi, chords);
       const SmoothResult result = smoothed(text, options_for(target));
       EXPECT_TRUE(result.proved);
-      EXPECT_LE(result.blocks_out, result.blocks_in - chords + 5);
+      const std::size_t ends = std::string_view(target) == "linuxcnc" ? 30 : 0;
+      EXPECT_LE(result.blocks_out, result.blocks_in - chords + 5 + ends);
     }
+  }
+}
+
+// Two lines and two half circles, in chords as CAM makes them: these come out, and the distance is
+// that from them: chords with a sagitta of e are sqrt(8/15) e off an arc.
+TEST(CurveForms, OfASlotAreItsLinesAndArcs) {
+  constexpr double kRadius = 5;
+  constexpr int kChords = 30;
+  std::string text = "G21 G90 G17\nG0 X0 Y0 Z5\nG1 Z-1 F600\nF1500\n";
+  for (const int side : {1, -1}) {
+    const double from = side > 0 ? 0 : 30;
+    for (int i = 1; i <= 6; ++i) {
+      text += fmt::format("G1 X{} Y{}\n", from + side * 5 * i, side > 0 ? 0 : 2 * kRadius);
+    }
+    for (int i = 1; i <= kChords; ++i) {
+      const double angle = geometry::kPi * i / kChords;
+      text += fmt::format("G1 X{:.3f} Y{:.3f}\n", 30 - from + side * kRadius * std::sin(angle),
+                          kRadius - side * kRadius * std::cos(angle));
+    }
+  }
+  text += "G0 Z5\nM2\n";
+  const double arcs = 2 * geometry::kPi * kRadius;
+  const double sagitta = kRadius * (1 - std::cos(geometry::kPi / kChords / 2));
+  const double off = std::sqrt(8.0 / 15 * arcs / (arcs + 60)) * sagitta;
+  for (const char* target : {"linuxcnc", "fanuc", "grbl", "siemens"}) {
+    SCOPED_TRACE(target);
+    SmoothOptions options = options_for(target);
+    const bool is_linuxcnc = std::string_view(target) == "linuxcnc";
+    if (is_linuxcnc) options.machine = find_machine(target);
+    const SmoothResult result = smoothed(text, options);
+    EXPECT_TRUE(result.proved);
+    EXPECT_LE(result.blocks_out, is_linuxcnc ? 18U : 16U);
+    EXPECT_LE(result.runs_after_s, result.runs_before_s + options.machine->servo_period);
+    const Figures& before = OneRun(text).smooth(options).facts.scale.original;
+    EXPECT_NEAR(before.distance, off, 0.02 * off);
   }
 }
 

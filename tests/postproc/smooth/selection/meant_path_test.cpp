@@ -61,6 +61,37 @@ TEST(MeantPath, KnowsTheDistanceOfMovesThatWerePlannedAlongAnotherCurve) {
   EXPECT_NEAR(MeantPath(circle).distance_of(moves, other), 0.02 * kRadius, 1e-4);
 }
 
+// Along moves that are known: a fair curve that is off them does not count.
+TEST(MeantPath, IsWhatWasKnown) {
+  postproc::Run run;
+  geometry::SmoothCurve off = half_circle(10, run);
+  const auto z = geometry::Vector3::UnitZ();
+  const Point3 middle(0, kRadius, 0);
+  const double half = off.curve.last() / 2;
+  const std::vector<PlannedMove> shape = {
+      {geometry::Arc{run.points.front(), middle, Point3::Zero(), z, std::numbers::pi / 2},
+       1000,
+       {},
+       0},
+      {geometry::Arc{middle, run.points.back(), Point3::Zero(), z, std::numbers::pi / 2},
+       1000,
+       {},
+       half}};
+  std::vector<Point3> controls = off.curve.control_points();
+  for (Point3& control : controls) control *= 1.01;
+  off.curve = geometry::BsplineCurve(off.curve.basis(), controls);
+  const double height = kRadius * (1 - std::cos(std::numbers::pi / 20));
+  EXPECT_NEAR(MeantPath(off, shape).distance_of(run), std::sqrt(8.0 / 15) * height, 1e-3);
+  EXPECT_NEAR(MeantPath(off, shape).distance_of(shape, off), 0, 1e-9);
+  EXPECT_NEAR(MeantPath(off).distance_of(shape, off), 0.01 * kRadius, 1e-3);
+  // Beyond the ends of an arc the nearest place is an end.
+  const geometry::Line beyond{run.points.back(), run.points.back() - Point3(0, 3, 0)};
+  EXPECT_NEAR(
+      MeantPath(off, shape)
+          .distance_of(std::vector<PlannedMove>{{beyond, 1000, {}, 0.99 * off.curve.last()}}, off),
+      std::sqrt(3.0), 0.01);
+}
+
 // n chords of a half circle turn by pi / n at each of n - 1 joints.
 TEST(Roughness, IsThatOfTheTurnsAtJoints) {
   postproc::Run run;

@@ -159,6 +159,7 @@ TEST(RunBudget, LeavesOneFormOfACurveThatWasFound) {
   ASSERT_TRUE(curve);
   const CurvatureProfile bends(curve->path.curve);
   const MeantPath meant(curve->path);
+  const std::optional<LineArcs> shape;
   SmoothedRun result = run.smooth(options);
   const auto cost = [&](const Candidate& c) {
     return cost_of(c.figures, result.facts.scale, options.prefer);
@@ -170,7 +171,7 @@ TEST(RunBudget, LeavesOneFormOfACurveThatWasFound) {
   const RunBudget spent(1, 1'000'000);
   geometry::count_operations(RunBudget::operations(1, 1'000'000));
   ASSERT_TRUE(spent.is_spent());
-  add_forms({task, times, bounds, meant, spent}, {*curve, bends, 0.002, 0.004}, result);
+  add_forms({task, times, bounds, meant, shape, spent}, {*curve, bends, 0.002, 0.004}, result);
   EXPECT_EQ(result.candidates.size(), 2u);
   EXPECT_TRUE(result.is_cut_short);
 }
