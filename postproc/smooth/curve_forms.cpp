@@ -7,8 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "gcode/controls/arc_rules.h"
-#include "gcode/curves/curve_format.h"
 #include "geometry/basic/operations.h"
 #include "postproc/runs/run_path.h"
 #include "postproc/smooth/forms/slow_parts.h"
@@ -54,30 +52,6 @@ std::optional<Candidate> make_candidate(const RunTask& task, const RunTimes& tim
 
 namespace {
 
-bool curves_wanted(const RunTask& task) {
-  const SmoothOptions& options = task.options;
-  const gcode::CurveFormat* format = options.target->curves;
-  if (format == nullptr || !may_start(*format, task.context.before)) return false;
-  return options.output == Form::kCurves ||
-         (options.output == Form::kAuto && options.target->curves_in_auto);
-}
-
-// A form that could be made, and what it has at least.
-struct Offer {
-  Form form = Form::kLines;
-  double blocks = 0;    // about
-  double distance = 0;  // mm, rms from the path that was meant
-  PlanOptions options;
-  ArcsAlong arcs = ArcsAlong::kCurve;
-};
-
-// Of the offer that was made last: its plan, and what of it is slow.
-struct PlanOfLast {
-  std::optional<OutputPlan> plan;
-  std::vector<double> lost;
-  std::optional<std::vector<SlowPart>> slow;
-};
-
 class CurveForms {
  public:
   CurveForms(const FormSetting& setting, const CurveOfRun& given, SmoothedRun& result)
@@ -86,31 +60,25 @@ class CurveForms {
         curve_(given.curve),
         bends_(given.bends),
         share_(given.share),
-        left_(given.left),
-        is_first_(given.is_first),
-        one_sided_(setting.task.options.side != geometry::Side::kBoth),
         pieces_(curve_.path.curve),
+        offers_(setting, given, result.facts, pieces_),
         result_(result),
         first_(result.candidates.size()) {}
 
   void add() {
     const Form wanted = task_.options.output;
-    const bool is_fair = curve_.method == Method::kFair;
-    if (curves_wanted(task_)) offer_curves();
-    if (wanted == Form::kCurves) {
-      make_best();
-      if (has_form(Form::kCurves)) return;
+    make_best(offers_.curves());
+    if (wanted == Form::kCurves && has_form(Form::kCurves)) return;
+    if (wanted != Form::kLines) {
+      make_best(offers_.line_arcs());
+      make_best(offers_.arcs());
+      make_best(offers_.arc_splines());
     }
-    if (wanted != Form::kLines && is_fair && is_first_) offer_line_arcs();
-    if (wanted != Form::kLines) offer_arcs();
-    if (wanted != Form::kLines && is_fair && is_first_) offer_arc_splines();
-    if (wanted != Form::kArcs) offer_lines();
-    make_best();
+    if (wanted != Form::kArcs) add_lines();
   }
 
  private:
   [[nodiscard]] const RunFacts& facts() const { return result_.facts; }
-  [[nodiscard]] double distance_before() const { return std::max(facts().off, facts().scale.near); }
 
   [[nodiscard]] bool has_form(Form form) const {
     return std::ranges::any_of(result_.candidates,
@@ -123,10 +91,10 @@ class CurveForms {
     return wanted == Form::kAuto ? result_.candidates.size() > first_ : has_form(wanted);
   }
 
-  // In the order in which they were offered, but for those that what there is then beats.
-  void make_best() {
+  // In the order in which they are offered, but for those that what there is then beats.
+  void make_best(std::vector<Offer> offers) {
     const bool all = task_.scope == CandidateScope::kAll;
-    for (Offer& offer : offers_) {
+    for (Offer& offer : offers) {
       if (!all && setting_.bounds.is_beaten(offer.form, offer.blocks, offer.distance)) {
         result_.left_out = true;
         continue;
@@ -138,7 +106,8 @@ class CurveForms {
       if (!all && offer.form == Form::kArcs && task_.memo == nullptr) {
         offer.options.most_arcs = setting_.bounds.most_blocks(offer.form, offer.distance);
       }
-      last_ = {};
+      last_plan_.reset();
+      mended_.reset();
       auto candidate = made(offer);
       const bool limited = offer.options.most_arcs < PlanOptions().most_arcs;
       if (candidate) {
@@ -148,7 +117,6 @@ class CurveForms {
         result_.left_out = true;  // there may be more arcs than these
       }
     }
-    offers_.clear();
   }
 
   // The last candidate again, with the run where it is slower: at its ends, or else everywhere, and
@@ -170,8 +138,8 @@ class CurveForms {
     }
   }
 
-  // Where it is as fast as the run, but for next to nothing. What was meant may be slower by as much
-  // as any form.
+  // Where it is as fast as the run, but for next to nothing. What was meant may be slower by as
+  // much as any form.
   bool is_added_with_run(Offer offer, RunInPlace where) {
     offer.options.run_in_place = where;
     auto candidate = made(offer);
@@ -196,9 +164,7 @@ class CurveForms {
   bool may_be_mended(Figures mended, const Offer& offer) {
     if (task_.scope == CandidateScope::kAll || task_.memo != nullptr) return true;
     const Figures& before = facts().scale.original;
-    for (const double lost : lost_by_last_plan(offer)) {
-      mended.times.programmed -= std::max(lost, 0.0);
-    }
+    mended.times.programmed -= mended_plan(offer).lost();
     mended.blocks = std::min(mended.blocks, before.blocks);
     mended.bytes = std::min(mended.bytes, before.bytes);
     mended.distance = std::min(mended.distance, before.distance);
@@ -214,11 +180,12 @@ class CurveForms {
     return *slow_parts_;
   }
 
-  // See SlowParts::lost. `offer`: the last one that there is a candidate of.
-  [[nodiscard]] const std::vector<double>& lost_by_last_plan(const Offer& offer) {
-    if (!last_.plan) last_.plan = plan_of(offer);  // the candidate was made for another setting
-    if (last_.lost.empty()) last_.lost = slow_parts().lost(last_.plan.value());
-    return last_.lost;
+  // Of the last offer that there is a candidate of, which may be one of another setting.
+  [[nodiscard]] MendedPlan& mended_plan(Offer offer) {
+    offer.options.run_in_place = RunInPlace::kNowhere;
+    if (!last_plan_) last_plan_ = plan_of(offer);
+    if (!mended_) mended_.emplace(slow_parts(), last_plan_.value());
+    return *mended_;
   }
 
   [[nodiscard]] std::optional<Candidate> made(const Offer& offer) {
@@ -233,7 +200,9 @@ class CurveForms {
 
   [[nodiscard]] std::optional<OutputPlan> plan_of(const Offer& offer) {
     const Run& run = task_.run;
-    if (offer.options.run_in_place != RunInPlace::kNowhere) return with_run_in(offer);
+    if (offer.options.run_in_place != RunInPlace::kNowhere) {
+      return mended_plan(offer).with_run(offer.options.run_in_place, slower_by_);
+    }
     if (offer.form == Form::kCurves) return plan_curves(run, curve_.path, offer.options);
     if (offer.form == Form::kLines) return plan_lines(run, curve_.path, pieces_, offer.options);
     switch (offer.arcs) {
@@ -247,23 +216,10 @@ class CurveForms {
     return plan_arcs(run, curve_.path, pieces_, bends_, offer.options);
   }
 
-  [[nodiscard]] std::optional<OutputPlan> with_run_in(Offer offer) {
-    const RunInPlace where = std::exchange(offer.options.run_in_place, RunInPlace::kNowhere);
-    if (where == RunInPlace::kAtEnds) {
-      if (!last_.plan) last_.plan = plan_of(offer);
-      return slow_parts().with_run_at_ends(last_.plan.value());
-    }
-    const std::vector<double>& lost = lost_by_last_plan(offer);
-    if (!last_.slow) last_.slow = slow_parts().find(*last_.plan, lost);
-    const bool all = where == RunInPlace::kEverywhere;
-    return slow_parts().with_run(*last_.plan,
-                                 all ? *last_.slow : enough_of(*last_.slow, slower_by_));
-  }
-
   [[nodiscard]] std::optional<Candidate> newly_made(const Offer& offer) {
     const std::optional<OutputPlan> plan = plan_of(offer);
     if (!plan) return std::nullopt;
-    if (offer.options.run_in_place == RunInPlace::kNowhere) last_.plan = plan;
+    if (offer.options.run_in_place == RunInPlace::kNowhere) last_plan_ = plan;
     auto candidate = make_candidate(task_, setting_.times, *plan, facts(), result_.candidates);
     if (!candidate) return std::nullopt;
     candidate->method = name_of(curve_.method);
@@ -275,155 +231,26 @@ class CurveForms {
     return candidate;
   }
 
-  [[nodiscard]] PlanOptions plan_within(double deviation) const {
-    const auto& [run, context, options, scope, memo] = task_;
-    PlanOptions plan;
-    plan.target = options.target;
-    plan.machine = options.machine;
-    plan.units = context.before.units;
-    plan.active_plane = context.before.plane;
-    plan.max_deviation = std::min(left_, deviation);
-    plan.chord_height = kPlans.balanced * plan.max_deviation;
-    plan.keep_corner_angle = keep_corner_angle_of(options);
-    plan.linearize = linearize_of(options);
-    return plan;
-  }
-
-  [[nodiscard]] double far() const { return std::min(left_, kFormTuning.far * share_); }
-
-  // Of arcs that are no farther than `deviation` from where they are looked for, where `whole` is
-  // left.
-  [[nodiscard]] PlanOptions arcs_within(double deviation, double whole) const {
-    PlanOptions plan = plan_within(left_);
-    plan.max_deviation = std::min(deviation, whole);
-    plan.chord_height = kPlans.balanced * plan.max_deviation;
-    plan.tolerance = left_ + curve_.path.deviation;
-    return plan;
-  }
-
-  // mm, ascending: near to the curve, where that is much nearer than the tolerance allows, and far.
-  // The nearest are dear, and for who asks for them alone.
-  [[nodiscard]] std::vector<double> deviations() const {
-    std::vector<double> all;
-    const double furthest = one_sided_ ? kFormTuning.one_sided * far() : far();
-    const bool accurate = task_.options.prefer == Prefer::kAccuracy;
-    for (const double multiple : std::span(kFormTuning.near_arcs).subspan(accurate ? 0 : 1)) {
-      const double near = std::max(multiple * distance_before(), 2 * facts().scale.printed);
-      if (near < kFormTuning.another * furthest) all.push_back(near);
-    }
-    all.push_back(furthest);
-    return all;
-  }
-
-  void offer_curves() {
-    const bool few = task_.options.quick && !task_.options.target->curves_in_auto;
-    const std::vector<double> all = deviations();
-    const bool any_number =
-        task_.options.output == Form::kCurves || facts().form == Form::kCurves ||
-        rounding_is_worth_trying(setting_.bounds.least_time(), facts().scale.alone);
-    const double most = kFormTuning.curve_blocks * facts().scale.original.blocks;
-    for (const double deviation : std::span(all).last(few ? 1 : all.size())) {
-      const PlanOptions plan = plan_within(deviation);
-      if (!any_number && curves_expected(pieces_, plan) > most) continue;
-      offers_.push_back({Form::kCurves, 0, 0, plan});
-    }
-  }
-
-  void offer_arcs() {
-    // Each straight part is a line, and what joins two of them gently takes two arcs or more.
-    const double least = 3.0 * static_cast<double>(pieces_.straight_runs.size());
-    const geometry::ArcCount count(pieces_.pieces);
-    const std::vector<double> all = deviations();
-    const bool flat =
-        lies_across(task_.run, 0) || lies_across(task_.run, 1) || lies_across(task_.run, 2);
-    for (const double deviation : all) {
-      // Were those of the next smaller deviation as near as can be, these would be the same.
-      // With the target's own chords they are not as far from it as they may be.
-      const bool cut = task_.options.target->chords.any();
-      const bool farther = flat && !cut && deviation > all.front();
-      PlanOptions plan = arcs_within(std::min(left_, deviation), left_);
-      // Those are there to be near, not few.
-      const bool near = deviation < all.back() && !wants_few_moves(task_.options);
-      if (near) plan.arc_effort = geometry::ArcEffort::kBrief;
-      const double blocks = std::max(least, arcs_expected(task_.run, count, plan));
-      offers_.push_back({Form::kArcs, blocks, farther ? kFormTuning.of_arcs * deviation : 0, plan});
-    }
-  }
-
-  void offer_line_arcs() {
-    if (one_sided_ || !setting_.shape) return;
-    const double whole = left_ + curve_.path.deviation;
-    offers_.push_back({Form::kArcs, 0, 0, arcs_within(whole, whole), ArcsAlong::kVertices});
-  }
-
-  // Arcs in the band around the vertices themselves. Of arcs no more should come than there were:
-  // the search finds one fewer here and there in a band that is a little less wide.
-  void offer_arc_splines() {
-    const bool cut = task_.options.target->chords.any();  // arcs along the curve have less room
-    const bool few = wants_few_moves(task_.options);
-    if (one_sided_ || !(few || cut || !task_.run.bends.empty())) return;
-    const double whole = left_ + curve_.path.deviation;
-    for (const double part : kFormTuning.bands) {
-      PlanOptions band = arcs_within(part * whole, whole);
-      // What is outside of an arc is farther from the chords that the target makes of it.
-      band.outside = whole - std::min(kFormTuning.for_control * whole,
-                                      gcode::usual_chord_error(task_.options.target->chords));
-      if (few) band.arc_effort = geometry::ArcEffort::kThorough;
-      offers_.push_back({Form::kArcs, 0, 0, band, ArcsAlong::kBand});
-      if (task_.run.bends.empty()) return;
-    }
-  }
-
-  void offer_lines() {
+  void add_lines() {
     const auto named = task_.options.linearize;
-    if (named && *named != Linearize::kChord) return make_named_lines();
-    // Where it is known how far the curve is from each edge, chords may take the rest there.
-    const bool known = !one_sided_ && !curve_.path.edge_deviations.empty();
-    double most = known ? kFormTuning.far * share_ : far();
-    if (one_sided_) most = kFormTuning.one_sided * far();
-    const double highest = kPlans.balanced * most;
-    const bool accurate = task_.options.prefer == Prefer::kAccuracy;
-    const double nearest = accurate ? kFormTuning.accurate_blocks : kFormTuning.near_blocks;
-    for (std::size_t i = 0; i < std::size(kFormTuning.near_chords); ++i) {
-      const double height = std::max(kFormTuning.near_chords[i] * distance_before(),
-                                     facts().scale.printed / kFormTuning.of_height);
-      if (height > kFormTuning.another * highest) continue;
-      offer_chords(height, i == 0 ? nearest : 1, highest);
-    }
-    offer_chords(highest, 0, highest);
-    if (linearize_of(task_.options) == Linearize::kMinLink) make_named_lines();
-  }
-
-  // `most`: in parts of the blocks that there were; 0: any number. They may become higher for it.
-  void offer_chords(double height, double most, double highest) {
-    PlanOptions plan = plan_within(one_sided_ ? kFormTuning.one_sided * far() : far());
-    plan.linearize = Linearize::kChord;
-    if (!one_sided_) plan.tolerance = left_ + curve_.path.deviation;
-    plan.chord_height = height;
-    plan.most_moves = static_cast<std::size_t>(most * facts().scale.original.blocks);
-    double blocks = bends_.chords(height, 0);
-    if (plan.most_moves > 0) {
-      blocks = std::min(blocks,
-                        std::max(static_cast<double>(plan.most_moves), bends_.chords(highest, 0)));
-    }
-    offers_.push_back({Form::kLines, blocks, kFormTuning.of_height * height, plan});
+    if (!named || *named == Linearize::kChord) make_best(offers_.chords());
+    const bool links = linearize_of(task_.options) == Linearize::kMinLink;
+    if (links || (named && *named != Linearize::kChord)) add_named_lines();
   }
 
   // The farthest first, one by one: of nearer ones there are no fewer.
-  void make_named_lines() {
-    make_best();
+  void add_named_lines() {
     double before = 0;
     double fewest = 0;
     for (const double multiple : kFormTuning.named_chords) {
-      const PlanOptions plan = plan_within(multiple * share_);
+      const PlanOptions plan = offers_.within(multiple * share_);
       if (before > 0 && plan.max_deviation > kFormTuning.another * before) continue;
       before = plan.max_deviation;
       fewest = std::max(fewest, kFormTuning.links * bends_.chords(plan.max_deviation, 0));
       if (!setting_.bounds.is_beaten(Form::kLines, fewest, 0)) {
         fewest = std::max(fewest, kFormTuning.counted_links * links_about(plan));
       }
-      offers_.push_back({Form::kLines, fewest, 0, plan});
-      make_best();
+      make_best({{Form::kLines, fewest, 0, plan}});
     }
   }
 
@@ -441,16 +268,14 @@ class CurveForms {
   const RunCurve& curve_;
   const CurvatureProfile& bends_;
   double share_;
-  double left_;
-  bool is_first_;
-  bool
-      one_sided_;  // the run must not be cut on one side: what is written follows the curve closely
   geometry::MarkedPieces pieces_;
+  FormOffers offers_;
   SmoothedRun& result_;
   std::size_t first_;  // candidate of this curve
-  std::vector<Offer> offers_;
   std::optional<SlowParts> slow_parts_;
-  PlanOfLast last_;
+  // Of the offer that was made last.
+  std::optional<OutputPlan> last_plan_;
+  std::optional<MendedPlan> mended_;
   double slower_by_ = 0;  // s, its candidate
 };
 

@@ -1,65 +1,16 @@
-// The forms in which one curve could replace its run: curves of the target, arcs and lines, near to
-// the path that was meant and as far from it as the tolerance lets them. Made are those that may
-// be the best.
+// The forms in which one curve could replace its run, made as far as they may be the best: curves
+// of the target, arcs and lines (postproc/smooth/form_offers.h), with the run where one is slower.
 #pragma once
 
 #include <optional>
 #include <span>
 
-#include "postproc/smooth/forms/line_arcs.h"
+#include "postproc/smooth/form_offers.h"
 #include "postproc/smooth/forms/output_plan.h"
-#include "postproc/smooth/methods/run_curve.h"
 #include "postproc/smooth/selection/candidate.h"
-#include "postproc/smooth/selection/candidate_bounds.h"
-#include "postproc/smooth/selection/meant_path.h"
-#include "postproc/smooth/selection/run_budget.h"
 #include "postproc/smooth/selection/run_times.h"
 
 namespace batten::postproc {
-
-// How far forms may be from the curve: multiples of what the run itself is from the path that was
-// meant (rms), and of the form's share of the tolerance.
-struct FormTuning {
-  double near_arcs[3] = {0.2, 0.5, 1.6};     // greatest distance of arcs and curves
-  double near_chords[3] = {0.6, 1.35, 3.0};  // heights
-  // Blocks of the nearest chords at most, in parts of those before: a little less than what is
-  // clearly smaller (kCost), since balanced ones may be one more; for accuracy there may be more.
-  double near_blocks = 0.89;
-  double accurate_blocks = 1.5;
-  double far = 1.5;                           // of the share
-  double one_sided = 0.25;                    // of that, where the run must not be cut on one side
-  double named_chords[3] = {1.5, 0.6, 0.25};  // of the share, for lines laid by a named method
-  double links = 0.5;  // of the chords that are as high, for such lines at the least
-  // Of lines that are counted quickly, for a bound of their blocks: no fewer than 0.93 of them.
-  double counted_links = 0.93 / kBounds.fewer;
-  // Blocks, in parts of those before, that curves are expected in at most where none are asked for
-  // and no time is left to win: each says several numbers for each axis.
-  double curve_blocks = 0.5;
-  double another = 0.9;               // of what is farther, at most, or it is the same again
-  double bands[3] = {1, 0.97, 0.94};  // parts of the band around arcs in which few are looked for
-  double of_height = 0.25;            // the rms of balanced chords by their height, at least
-  double of_arcs = 0.25;              // that of arcs by their greatest deviation
-  double for_control = 0.5;  // of what the curve leaves, for the target's own chords at the most
-};
-inline constexpr FormTuning kFormTuning;
-
-// Of one run and one method; all must live as long.
-struct FormSetting {
-  const RunTask& task;
-  const RunTimes& times;
-  const CandidateBounds& bounds;
-  const MeantPath& meant;
-  const std::optional<LineArcs>& shape;  // of the run
-  const RunBudget& budget;
-};
-
-struct CurveOfRun {
-  const RunCurve& curve;
-  const CurvatureProfile& bends;
-  double share = 0;      // mm, of the tolerance: the form's
-  double left = 0;       // mm, what the curve leaves of the tolerance
-  bool is_first = true;  // of the run: the path that was meant, or what was asked for by name
-};
 
 // The candidate's method and curvature are left to who knows them. Nothing where the target cannot
 // say the plan, or there are not enough block numbers, or one of those that are there has the same

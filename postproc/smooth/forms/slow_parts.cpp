@@ -259,4 +259,22 @@ std::vector<SlowPart> enough_of(std::vector<SlowPart> parts, double seconds) {
   return parts;
 }
 
+const std::vector<double>& MendedPlan::lost_by_moves() {
+  if (!lost_) lost_ = parts_.lost(plan_);
+  return *lost_;
+}
+
+double MendedPlan::lost() {
+  double sum = 0;
+  for (const double each : lost_by_moves()) sum += std::max(each, 0.0);
+  return sum;
+}
+
+std::optional<OutputPlan> MendedPlan::with_run(RunInPlace where, double slower_by) {
+  if (where == RunInPlace::kAtEnds) return parts_.with_run_at_ends(plan_);
+  if (!slow_) slow_ = parts_.find(plan_, lost_by_moves());
+  const bool all = where == RunInPlace::kEverywhere;
+  return parts_.with_run(plan_, all ? *slow_ : enough_of(*slow_, slower_by));
+}
+
 }  // namespace batten::postproc

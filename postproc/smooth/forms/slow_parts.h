@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "postproc/smooth/forms/output_plan.h"
@@ -71,5 +72,27 @@ class SlowParts {
 
 // Those that win the most, as many as win so many seconds; in order.
 [[nodiscard]] std::vector<SlowPart> enough_of(std::vector<SlowPart> parts, double seconds);
+
+// A plan, and the run in its slow parts: what of it is slow is found once.
+class MendedPlan {
+ public:
+  // `parts` must live as long.
+  MendedPlan(const SlowParts& parts, OutputPlan plan) : parts_(parts), plan_(std::move(plan)) {}
+
+  // s: what the run may win in all, where it is faster.
+  [[nodiscard]] double lost();
+
+  // With the run there. `slower_by`: s, what it is to win where it is needed. Nothing where it can
+  // have the run nowhere.
+  [[nodiscard]] std::optional<OutputPlan> with_run(RunInPlace where, double slower_by);
+
+ private:
+  [[nodiscard]] const std::vector<double>& lost_by_moves();
+
+  const SlowParts& parts_;
+  OutputPlan plan_;
+  std::optional<std::vector<double>> lost_;
+  std::optional<std::vector<SlowPart>> slow_;
+};
 
 }  // namespace batten::postproc
