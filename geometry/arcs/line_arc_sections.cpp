@@ -10,9 +10,6 @@ namespace batten::geometry {
 
 namespace {
 
-// Of an arc: on a few edges about a corner one may lie by chance.
-constexpr std::size_t kFewestEdges = 6;  // [> LineArcSections.OfCornersAreNoArcs]
-
 // Whether the vertices between the ends are beside the line between these, one behind the other.
 bool is_line(std::span<const Point2> points, double limit) {
   count_operations(points.size());
@@ -62,7 +59,7 @@ LineArcSection longest_section(std::span<const Point2> points, const LineArcLimi
   };
   LineArcSection line{0, std::max<std::size_t>(1, farthest(1, end, are_line)), {}};
   LineArcSection arc;
-  arc.last = farthest(kFewestEdges, end, [&](std::size_t last) {
+  arc.last = farthest(kFewestOnCircle - 1, end, [&](std::size_t last) {
     auto circle = fit_circle(points.first(last + 1), {limits.off, limits.chord});
     if (!circle && !are_line(last)) return false;
     arc.circle = std::move(circle);

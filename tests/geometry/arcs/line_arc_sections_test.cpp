@@ -105,12 +105,13 @@ TEST(LineArcSections, AreAsManyAsWereCut) {
   }
 }
 
-// The first edges of an arc in short chords are a line as well.
+// The first vertices of an arc in short chords are on one line, rounded to the same number.
 TEST(LineArcSections, OfShortChordsAreAsFew) {
   Cut cut;
+  cut.angle = -kPi / 2;
   cut.add_line(20);
   cut.angle += kPi / 2;
-  cut.add_arc(25, 6, 9000);
+  cut.add_arc(25, 3, 4500);
   const auto sections = cut.sections();
   ASSERT_TRUE(sections);
   ASSERT_EQ(sections->size(), 2U);
@@ -134,12 +135,12 @@ TEST(LineArcSections, AreNoMoreThanWereAskedFor) {
   EXPECT_FALSE(slot().sections(3));
 }
 
-// Sides in short edges, with turns of 3 degrees between them.
+// Sides in short edges, with turns of 2.5 degrees between them.
 TEST(LineArcSections, OfCornersAreNoArcs) {
   Cut cut;
   for (int i = 0; i < 20; ++i) {
     cut.add_line(4, 20);
-    cut.angle += 3 * kPi / 180;
+    cut.angle += 2.5 * kPi / 180;
   }
   const auto sections = cut.sections();
   ASSERT_TRUE(sections);
