@@ -55,6 +55,8 @@ class SiemensReader(PlainReader):
             return self.event(upper)
         if re.match(r"GOTO", upper):
             return self.opaque(upper, None)
+        if re.search(r"\b(RND|CHF|CHR)\s*=", upper) and not re.search(r"\bG\d|[A-Z]{4}", upper):
+            return self.opaque(upper, "moves")  # a move with a cut corner behind it
         try:
             self.statement(upper, " ".join(upper.split()))
         except Unknown:
