@@ -55,8 +55,9 @@ class SiemensReader(PlainReader):
             return self.event(upper)
         if re.match(r"GOTO", upper):
             return self.opaque(upper, None)
-        if re.search(r"\b(RND|CHF|CHR)\s*=", upper) and not re.search(r"\bG\d|[A-Z]{4}", upper):
-            return self.opaque(upper, "moves")  # a move with a cut corner behind it
+        if (re.search(r"RND|CHF|CHR|G153|SUPA", upper) and
+                re.fullmatch(r"((RND|CHF|CHR)\s*=\s*|G153\b|SUPA\b|[XYZF\d.\s+-])+", upper)):
+            return self.opaque(upper, "moves")  # with a cut corner behind it, or in the machine's axes
         try:
             self.statement(upper, " ".join(upper.split()))
         except Unknown:
