@@ -126,7 +126,7 @@ class RunSmoother {
     RunFacts& facts = result_.facts;
     facts.noise = fair.noise;
     facts.fair_curvature = CurvatureProfile(fair.curve).greatest();
-    const double within = (1 - kPlans.arc_chords) * (shares_.smoothing + shares_.form);
+    const double within = shares_.smoothing + shares_.form;
     shape_ = line_arcs_of(run(), within, rounded());
     const bool is_known = shape_ && shape_->is_certain;
     meant_.emplace(*fair_, is_known ? moves_along(*shape_, run(), *fair_) : MeantPath::Moves());

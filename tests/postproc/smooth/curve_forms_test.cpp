@@ -170,6 +170,32 @@ TEST(CurveForms, OfASlotAreItsLinesAndArcs) {
   }
 }
 
+// CAM made its chords for the tolerance that they are smoothed within: they leave their arcs by
+// nearly all of it.
+TEST(CurveForms, OfChordsAsHighAsTheToleranceAreTheirArcs) {
+  constexpr double kRadius = 3;
+  constexpr int kChords = 10;
+  std::string text = "G21 G90 G17\nG0 X3 Y0 Z5\nG1 Z-1 F600\nF1500\n";
+  for (int corner = 0; corner < 4; ++corner) {
+    const double x = corner == 0 || corner == 1 ? 50 - kRadius : kRadius;
+    const double y = corner == 0 || corner == 3 ? kRadius : 30 - kRadius;
+    for (int i = 0; i <= kChords; ++i) {
+      const double angle = geometry::kPi / 2 * (corner - 1 + static_cast<double>(i) / kChords);
+      text += fmt::format("G1 X{:.3f} Y{:.3f}\n", x + kRadius * std::cos(angle),
+                          y + kRadius * std::sin(angle));
+    }
+  }
+  text += "G0 Z5\nM2\n";
+  for (const char* target : {"linuxcnc", "siemens"}) {
+    SCOPED_TRACE(target);
+    SmoothOptions options = options_for(target);
+    options.machine = find_machine(std::string_view(target) == "linuxcnc" ? target : "mill");
+    const SmoothResult result = smoothed(text, options);
+    EXPECT_TRUE(result.proved);
+    EXPECT_LE(result.blocks_out, 19U);
+  }
+}
+
 // What is left of a circle by a control that cuts arcs coarsely is chords, and those are off it.
 TEST(CurveForms, SayHowFarChordsOfACircleAreOffIt) {
   SmoothOptions options = options_for("klipper");
