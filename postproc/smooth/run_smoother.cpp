@@ -118,9 +118,8 @@ class RunSmoother {
   }
 
   // The path that was meant is what the vertices are on, where that is lines and arcs, and else the
-  // curve through them. Where chords take much of the
-  // tolerance, the fair curve has to run between vertices and chords: then it is fitted once more,
-  // with more room.
+  // curve through them. Where chords take much of the tolerance, the fair curve has to run between
+  // vertices and chords: then it is fitted once more, with more room.
   void find_meant(const geometry::SmoothCurve& fair, CurveRequest request) {
     fair_ = fair;
     RunFacts& facts = result_.facts;

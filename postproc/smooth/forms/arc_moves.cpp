@@ -20,16 +20,6 @@ using geometry::Vector3;
 
 namespace {
 
-geometry::ArcPartsOptions parts_for(const geometry::Arc& arc, const gcode::Control& target) {
-  geometry::ArcPartsOptions parts;
-  parts.max_sweep = max_arc_sweep(target);
-  const PlaneAxes* plane = gcode::plane_across(arc.axis);
-  if (target.single_quadrants && plane != nullptr) {
-    parts.quadrant_from = Vector3::Unit(plane->first);
-  }
-  return parts;
-}
-
 // How far the chords that the target makes of an arc leave it. Printing may move each end by a
 // step, which takes a chord more or less, or longer ones; it moves the centre by less.
 geometry::ArcRunning::Error run_error(const gcode::ArcChords& chords, double grid, double radius,
@@ -64,8 +54,15 @@ double arc_deviation(const PlanOptions& options) {
   return options.max_deviation * (1 - kPlans.arc_chords);
 }
 
-std::vector<geometry::Arc> parts_of(const geometry::Arc& arc, const gcode::Control& target) {
-  return geometry::arc_parts(arc, parts_for(arc, target));
+std::vector<geometry::Arc> parts_of(const geometry::Arc& arc, const gcode::Control& target,
+                                    double most) {
+  geometry::ArcPartsOptions parts;
+  parts.max_sweep = std::min(most, max_arc_sweep(target));
+  const PlaneAxes* plane = gcode::plane_across(arc.axis);
+  if (target.single_quadrants && plane != nullptr) {
+    parts.quadrant_from = Vector3::Unit(plane->first);
+  }
+  return geometry::arc_parts(arc, parts);
 }
 
 void append_taken(const PathPiece& piece, double deviation, const PlanOptions& options,

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "gcode/controls/arc_rules.h"
@@ -24,9 +25,10 @@ namespace batten::postproc {
 // mm: max_deviation, but for what is kept for chords in place of arcs.
 [[nodiscard]] double arc_deviation(const PlanOptions& options);
 
-// In as many parts as the target needs.
-[[nodiscard]] std::vector<geometry::Arc> parts_of(const geometry::Arc& arc,
-                                                  const gcode::Control& target);
+// In as many parts as the target needs, none of which turns by more than `most` (radians).
+[[nodiscard]] std::vector<geometry::Arc> parts_of(
+    const geometry::Arc& arc, const gcode::Control& target,
+    double most = std::numeric_limits<double>::infinity());
 
 // Appends the piece; an arc in as many parts as the target needs, and chords within `deviation`
 // (mm) of those parts that it refuses.

@@ -71,20 +71,6 @@ double parameter_at(double angle, const LineArcSection& section,
   return before + part * (fair.vertex_parameters[section.first + next] - before);
 }
 
-// Of the same circle, none of them long.
-std::vector<geometry::Arc> short_arcs(const geometry::Arc& arc) {
-  const int count = static_cast<int>(std::ceil(std::abs(arc.sweep) / kLineArcs.arc - 1e-9));
-  std::vector<geometry::Arc> arcs;
-  Point3 start = arc.start;
-  for (int i = 1; i <= count; ++i) {
-    const Eigen::AngleAxisd turn(arc.sweep * i / count, arc.axis);
-    const Point3 end = i < count ? arc.center + turn * (arc.start - arc.center) : arc.end;
-    arcs.push_back({start, end, arc.center, arc.axis, arc.sweep / count});
-    start = end;
-  }
-  return arcs;
-}
-
 }  // namespace
 
 std::optional<LineArcs> line_arcs_of(const Run& run, double deviation, double rounded) {
@@ -149,13 +135,11 @@ std::optional<OutputPlan> plan_line_arcs(const LineArcs& shape, const Run& run,
       continue;
     }
     double angle = 0;
-    for (const geometry::Arc& arc : short_arcs(*whole)) {
-      for (const geometry::Arc& part : parts_of(arc, *options.target)) {
-        if (!gcode::arc_refusal(*options.target, part, options.units).empty()) return std::nullopt;
-        const double start = parameter_at(angle, shape.sections[i], fair);
-        plan.moves.push_back({part, moves[i].feed, {}, start});
-        angle += part.sweep;
-      }
+    for (const geometry::Arc& part : parts_of(*whole, *options.target, kLineArcs.arc)) {
+      if (!gcode::arc_refusal(*options.target, part, options.units).empty()) return std::nullopt;
+      const double start = parameter_at(angle, shape.sections[i], fair);
+      plan.moves.push_back({part, moves[i].feed, {}, start});
+      angle += part.sweep;
     }
   }
   if (plan.moves.size() > options.most_arcs) return std::nullopt;

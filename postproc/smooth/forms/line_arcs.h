@@ -27,7 +27,7 @@ struct LineArcs {
 };
 
 // `rounded`: mm, greatest rounding error of a coordinate. They are certain where the vertices are
-// off them (rms) by no more: those of other curves are off such sections by half as much again.
+// off them (rms) by no more; those of other curves are off such sections by more.
 // One circle may be a guess, as long as all points and edges are within `deviation` (mm) of it.
 // Nothing for other runs: that have bends, lie in no plane of the axes, or have no arc.
 [[nodiscard]] std::optional<LineArcs> line_arcs_of(const Run& run, double deviation,
