@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "geometry/basic/require.h"
@@ -13,11 +14,6 @@ namespace batten::geometry {
 namespace {
 
 constexpr ChordTuning kChords = kChordTuning;
-
-// A chord's deviation grows with the square of its length.
-ChordOptions for_shorter(const ChordOptions& options, double length) {
-  return {options.max_deviation * length * length, options.precision};
-}
 
 // The longest chord from one point of the curve.
 class LongestChord {
@@ -36,7 +32,6 @@ class LongestChord {
     return good_ > chords_.from() ? good_ : bad_;  // so short that rounding hides its proof
   }
 
- private:
   // What one chord says of the best end.
   struct Trial {
     double end;
@@ -50,6 +45,7 @@ class LongestChord {
     return {end, std::sqrt(chord.height), fits && (chord.in_order || proved(end))};
   }
 
+ private:
   [[nodiscard]] bool holds(double end) const { return try_end(end).holds; }
 
   // Where the curve goes back and forth along its chord.
@@ -126,16 +122,15 @@ class LongestChord {
 };
 
 // Vertices after `from` up to `to`, greedily: no sequence of such chords gets farther with
-// as many, since a chord from farther on reaches farther. Stops after `at_most` chords.
+// as many, since a chord from farther on reaches farther.
 std::vector<double> greedy_ends(const CurvePieces& pieces, double from, double to,
-                                const ChordOptions& options,
-                                std::size_t at_most = std::numeric_limits<std::size_t>::max()) {
+                                const ChordOptions& options) {
   std::vector<double> ends;
   std::size_t piece = pieces.index_of(from);
   // A chord is about as long as the one before, and as much longer than that as that was.
   double last_step = pieces.breaks()[piece + 1] - pieces.breaks()[piece];
   double growth = 1;
-  for (double at = from; at < to && ends.size() < at_most;) {
+  for (double at = from; at < to;) {
     const double guess = at + std::clamp(growth, 1 / kChords.growth, kChords.growth) * last_step;
     while (piece + 1 < pieces.size() && pieces.breaks()[piece + 1] <= at) ++piece;
     const double end = LongestChord(pieces, piece, at, options).end(guess, to);
@@ -147,30 +142,52 @@ std::vector<double> greedy_ends(const CurvePieces& pieces, double from, double t
   return ends;
 }
 
-// As many chords as `ends` has, but with limits narrowed until the last is no remainder.
-std::vector<double> balanced(const CurvePieces& pieces, double from, std::vector<double> ends,
-                             const ChordOptions& options) {
-  const double to = ends.back();
-  const auto count = static_cast<double>(ends.size());
-  double good = 1;   // chord lengths relative to the greedy ones
-  double small = 0;  // too small: needs more chords
-  for (int round = 0; round < kChords.balancing_rounds && ends.size() > 1; ++round) {
-    const double height = ChordsFrom(pieces, ends[ends.size() - 2]).to(to).height;
-    const double full = for_shorter(options, good).max_deviation;
-    const double part = std::min(std::sqrt(height / full), 1.0);  // of a full chord
-    if (part >= kChords.full) break;
-    const double wanted = good * (count - 1 + part) / (count - 1 + kChords.wanted);
-    const double next = std::max(wanted, (good + small) / 2);
-    std::vector<double> narrower =
-        greedy_ends(pieces, from, to, for_shorter(options, next), ends.size() + 1);
-    if (narrower.size() > ends.size()) {
-      small = next;
-    } else {
-      ends = std::move(narrower);
-      good = next;
-    }
+// As many vertices, between which the chords have equal parts of `bows`, those of the chords there.
+std::vector<double> evened(const std::vector<double>& vertices, const std::vector<double>& bows) {
+  const std::size_t chords = bows.size();
+  const double part = std::reduce(bows.begin(), bows.end()) / static_cast<double>(chords);
+  std::vector<double> even = vertices;
+  double passed = 0;  // of the bows, before chord i
+  std::size_t i = 0;
+  for (std::size_t k = 1; k < chords; ++k) {
+    const double at = static_cast<double>(k) * part;
+    while (i + 1 < chords && passed + bows[i] < at) passed += bows[i++];
+    const double on = bows[i] > 0 ? std::clamp((at - passed) / bows[i], 0.0, 1.0) : 0;
+    even[k] = vertices[i] + on * (vertices[i + 1] - vertices[i]);
   }
-  return ends;
+  return even;
+}
+
+// As many chords as there are between greedy vertices, all of about one height: the last is no
+// short remainder. As they are where no others are found that hold.
+std::vector<double> spread(const CurvePieces& pieces, const std::vector<double>& greedy,
+                           const ChordOptions& options) {
+  const std::size_t chords = greedy.size() - 1;
+  const auto tried = [&](std::size_t piece, double from, double to) {
+    return LongestChord(pieces, piece, from, options).try_end(to);
+  };
+  const double full = std::sqrt(options.max_deviation);
+  std::vector<double> bows(chords, full);
+  bows.back() = tried(pieces.index_of(greedy[chords - 1]), greedy[chords - 1], greedy[chords]).bow;
+  if (chords == 1 || bows.back() >= kChords.full * full) return greedy;
+  std::vector<double> found = greedy;
+  std::vector<double> vertices = greedy;
+  for (int round = 0; round < kChords.spreading_rounds; ++round) {
+    vertices = evened(vertices, bows);
+    bool hold = true;
+    std::size_t piece = pieces.index_of(vertices.front());
+    for (std::size_t i = 0; i < chords; ++i) {
+      while (pieces.breaks()[piece + 1] <= vertices[i]) ++piece;
+      const auto trial = tried(piece, vertices[i], vertices[i + 1]);
+      bows[i] = trial.bow;
+      hold = hold && trial.holds;
+    }
+    if (!hold) continue;
+    found = vertices;
+    const auto [least, greatest] = std::ranges::minmax(bows);
+    if (least >= kChords.even * greatest) break;
+  }
+  return found;
 }
 
 // Appends greedy chords, the last of them balanced.
@@ -181,13 +198,12 @@ void append_balanced(const CurvePieces& pieces, double from, const std::vector<d
     return;
   }
   const std::size_t kept = ends.size() > kChords.balanced ? ends.size() - kChords.balanced : 0;
-  const double start = kept > 0 ? ends[kept - 1] : from;
   const auto cut = ends.begin() + static_cast<std::ptrdiff_t>(kept);
   vertices.insert(vertices.end(), ends.begin(), cut);
-  // It may be shorter: where no end could be proved beyond a greedy one, a chord from elsewhere may
-  // have gone farther.
-  const std::vector<double> tail = balanced(pieces, start, {cut, ends.end()}, options);
-  vertices.insert(vertices.end(), tail.begin(), tail.end());
+  std::vector<double> tail = {kept > 0 ? ends[kept - 1] : from};
+  tail.insert(tail.end(), cut, ends.end());
+  tail = spread(pieces, std::move(tail), options);
+  vertices.insert(vertices.end(), tail.begin() + 1, tail.end());
 }
 
 // Where chords have to end: the ends of straight runs that are about as long as the chords over

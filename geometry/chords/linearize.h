@@ -12,31 +12,28 @@ namespace batten::geometry {
 
 struct ChordOptions {
   double max_deviation = 0.01;  // mm, curve to chord; > 0
-  // A chord's end is searched to this part of its length: with this one, a thousand chords lose a
-  // quarter of a chord.
-  double precision = 5e-4;
-  bool balanced = true;  // whether the last chord is no remainder; else about as many come sooner
+  // A chord's end is searched to this part of its length: with this one, a thousand chords lose
+  // one chord.
+  double precision = 2e-3;
+  bool balanced = true;  // whether the last chord is no remainder; else as many come sooner
 };
 
 struct ChordTuning {
   // [..]: what fails at half and double (docs/ARCHITECTURE.md).
-  int secants = 12;     // that look for one end before its interval is halved
-  double widest = 4;    // by this factor the length changes from one to the next at most
-  double growth = 1.5;  // of the first guess over the chord before, at most
-  // The last chord is no remainder when it is this part of a full one. The limits are narrowed for
-  // one that is a little longer, for with a whole one there is often another after it.
-  double full = 0.98;
-  double wanted = 0.99;
-  int balancing_rounds = 8;  // in which the limits are narrowed
-  // Only so many chords at the end are narrowed: over these a remainder is spread thin, and
-  // the cost of the rounds does not grow with the run.
+  int secants = 12;          // that look for one end before its interval is halved
+  double widest = 4;         // by this factor the length changes from one to the next at most
+  double growth = 1.5;       // of the first guess over the chord before, at most
+  double full = 0.98;        // part of a full chord from which on the last one is no remainder
+  double even = 0.98;        // of the bow of the highest chord the least has, when all are spread
+  int spreading_rounds = 5;  // at most, until they are
+  // Only so many chords at the end are made shorter: over these a remainder is spread thin.
   std::size_t balanced = 50;
 };
 inline constexpr ChordTuning kChordTuning;
 
 // Parameters of the vertices, increasing, both ends of [from, to] included. Every chord
 // keeps max_deviation, shown by the control points of the Bezier pieces under it, not by
-// samples. The chords of one call are balanced: the last one is not a short remainder.
+// samples. The chords of one call are spread: the last one is not a short remainder.
 //
 // Where the curve has straight spans, a chord covers them whole.
 // Requires degree 3 or less and first() <= from < to <= last(). A corner of the curve is

@@ -19,7 +19,6 @@ struct Fineness {
   double finest = 0;      // mm, chord to curve, wished for
   double coarsest = 0;    // mm, the limit
   double min_length = 0;  // mm; where chords would be shorter, they become coarser
-  bool balanced = true;   // see geometry::ChordOptions
 };
 
 // mm, of one block period at this feed.
@@ -27,16 +26,10 @@ double length_per_block(double feed, const Machine& machine) {
   return std::min(feed / 60, machine.max_velocity()) * machine.block_period;
 }
 
-// How high chords are made.
-struct Height {
-  double mm = 0;
-  bool balanced = true;  // else quickly, for their number
-};
-
-Fineness fineness_for(double feed, const PlanOptions& options, double height, bool balanced) {
+Fineness fineness_for(double feed, const PlanOptions& options, double height) {
   const double per_block = length_per_block(feed, *options.machine);
   const double highest = std::max(height, kPlans.balanced * options.max_deviation);
-  return {height, highest, kPlans.periods * per_block, balanced};
+  return {height, highest, kPlans.periods * per_block};
 }
 
 Vertices on_the_curve(const BsplineCurve& curve, const std::vector<double>& parameters) {
@@ -61,8 +54,8 @@ Vertices on_the_curve(const geometry::CurvePieces& curve, const std::vector<doub
 // section whose chords come out too short.
 std::vector<double> chords(const MarkedPieces& curve, double from, double to,
                            const Fineness& fineness) {
-  std::vector<double> wished = geometry::chord_vertices(
-      curve, from, to, {.max_deviation = fineness.finest, .balanced = fineness.balanced});
+  std::vector<double> wished =
+      geometry::chord_vertices(curve, from, to, {.max_deviation = fineness.finest});
   if (fineness.finest >= fineness.coarsest) return wished;
   Fineness coarser = fineness;
   coarser.finest = std::min(fineness.finest * kPlans.coarser, fineness.coarsest);
@@ -130,7 +123,7 @@ std::vector<ChordSection> chord_sections(const geometry::SmoothCurve& fair,
 
 // `used_chords` is set where equal steps would have been too many.
 Vertices vertices_on(const geometry::SmoothCurve& fair, const MarkedPieces& pieces,
-                     const FeedSection& section, const PlanOptions& options, const Height& height,
+                     const FeedSection& section, const PlanOptions& options, double height,
                      bool& used_chords) {
   const BsplineCurve& curve = fair.curve;
   const double deviation = options.max_deviation;
@@ -155,17 +148,16 @@ Vertices vertices_on(const geometry::SmoothCurve& fair, const MarkedPieces& piec
       break;
   }
   std::vector<double> parameters = {section.from};
-  for (const ChordSection& part : chord_sections(fair, section, options, height.mm)) {
+  for (const ChordSection& part : chord_sections(fair, section, options, height)) {
     const std::vector<double> some =
-        chords(pieces, part.from, part.to,
-               fineness_for(section.feed, options, part.height, height.balanced));
+        chords(pieces, part.from, part.to, fineness_for(section.feed, options, part.height));
     parameters.insert(parameters.end(), some.begin() + 1, some.end());
   }
   return geometry::balanced_chords(curve, parameters);
 }
 
 OutputPlan lines_of(const Run& run, const geometry::SmoothCurve& fair, const MarkedPieces& pieces,
-                    const PlanOptions& options, const Height& height) {
+                    const PlanOptions& options, double height) {
   OutputPlan plan;
   plan.form = Form::kLines;
   geometry::Point3 place = run.points.front();
@@ -190,20 +182,17 @@ OutputPlan plan_lines(const Run& run, const geometry::SmoothCurve& fair, const M
   // Where the tolerance is known, each section has its own limit (chord_sections).
   const double deviation = std::max(options.max_deviation, options.tolerance);
   const double highest = std::max(kPlans.balanced * deviation, options.chord_height);
-  Height height{options.chord_height};
-  if (options.linearize == Linearize::kChord && options.most_moves > 0) {
-    // The number of chords goes with the root of their height.
-    const auto most = static_cast<double>(options.most_moves);
-    height.balanced = false;
-    while (height.mm < highest) {
-      const OutputPlan plan = lines_of(run, fair, pieces, options, height);
-      const double over = static_cast<double>(plan.moves.size()) / most;
-      if (over <= 1) break;
-      height.mm = std::min(highest, std::max(over * over, kPlans.coarser_again) * height.mm);
-    }
-    height.balanced = true;
+  double height = options.chord_height;
+  OutputPlan plan = lines_of(run, fair, pieces, options, height);
+  if (options.linearize != Linearize::kChord || options.most_moves == 0) return plan;
+  // The number of chords goes with the root of their height.
+  const auto most = static_cast<double>(options.most_moves);
+  while (height < highest && plan.moves.size() > options.most_moves) {
+    const double over = static_cast<double>(plan.moves.size()) / most;
+    height = std::min(highest, std::max(over * over, kPlans.coarser_again) * height);
+    plan = lines_of(run, fair, pieces, options, height);
   }
-  return lines_of(run, fair, pieces, options, height);
+  return plan;
 }
 
 }  // namespace batten::postproc
