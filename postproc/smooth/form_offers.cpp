@@ -120,8 +120,8 @@ std::vector<Offer> FormOffers::line_arcs() const {
   return {{Form::kArcs, 0, 0, arcs_within(whole, whole), ArcsAlong::kVertices}};
 }
 
-// Of arcs no more should come than there were: the search finds one fewer here and there in a band
-// that is a little less wide.
+// Where few are wanted: the search finds one fewer here and there in a band that is a little less
+// wide.
 std::vector<Offer> FormOffers::arc_splines() const {
   std::vector<Offer> offers;
   const bool cut = task_.options.target->chords.any();  // arcs along the curve have less room
@@ -136,7 +136,7 @@ std::vector<Offer> FormOffers::arc_splines() const {
                                     gcode::usual_chord_error(task_.options.target->chords));
     if (few) band.arc_effort = geometry::ArcEffort::kThorough;
     offers.push_back({Form::kArcs, 0, 0, band, ArcsAlong::kBand});
-    if (task_.run.bends.empty()) break;
+    if (task_.run.bends.empty() || !few) break;
   }
   return offers;
 }
