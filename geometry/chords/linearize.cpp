@@ -307,4 +307,35 @@ std::vector<LinkVertex> balanced_chords(const BsplineCurve& curve,
   return vertices;
 }
 
+// With vertices moved by d, a chord of length l whose bend is b high is off the curve at its part x
+// by 4 x (1 - x) b - (1 - x) d0 - x d1. Where the sum of its squares is least, at each vertex
+//   l0 (d- + 2 d) + l1 (2 d + d+) = 2 (l0 b0 + l1 b1),
+// of the chords that meet there: solved from one fixed vertex to the next by elimination.
+std::vector<LinkVertex> nearest_chords(const BsplineCurve& curve,
+                                       std::span<const double> parameters) {
+  std::vector<LinkVertex> vertices;
+  vertices.reserve(parameters.size());
+  for (const double u : parameters) vertices.push_back({curve.point_at(u), u});
+  std::vector<double> ratios(vertices.size());  // what of d+ is taken from d
+  std::vector<Vector3> moves(vertices.size(), Vector3::Zero());
+  Vector3 before = Vector3::Zero();  // the last chord's bend by its length
+  double length_before = 0;
+  for (std::size_t i = 0; i + 1 < vertices.size(); ++i) {
+    const double length = (vertices[i + 1].place - vertices[i].place).norm();
+    const Vector3 bend = length * bow(curve, parameters[i], parameters[i + 1]);
+    if (i > 0 && length_before + length > 0 && !is_corner(curve, parameters[i])) {
+      const double own = 2 * (length_before + length) - length_before * ratios[i - 1];
+      ratios[i] = length / own;
+      moves[i] = (2 * (before + bend) - length_before * moves[i - 1]) / own;
+    }
+    before = bend;
+    length_before = length;
+  }
+  for (std::size_t i = vertices.size() - 1; i-- > 1;) {
+    moves[i] -= ratios[i] * moves[i + 1];
+    vertices[i].place += moves[i];
+  }
+  return vertices;
+}
+
 }  // namespace batten::geometry

@@ -60,7 +60,12 @@ struct LinkVertex {
 [[nodiscard]] std::vector<LinkVertex> balanced_chords(const BsplineCurve& curve,
                                                       std::span<const double> parameters);
 
-// The rms distance of such chords over the height of the chords between the same parameters:
+// The same where chords may be of any heights, as those between given vertices are: moved to where
+// the chords' mean square distance from the curve, a parabola above each of them, is the least.
+[[nodiscard]] std::vector<LinkVertex> nearest_chords(const BsplineCurve& curve,
+                                                     std::span<const double> parameters);
+
+// The rms distance of balanced chords over the height of the chords between the same parameters:
 // sqrt(4/45), that of a parabola from its mean; sqrt(8/15) for chords whose ends are on the curve.
 inline constexpr double kBalancedError = 0.298;
 inline constexpr double kChordError = 0.730;

@@ -77,6 +77,8 @@ class CurveForms {
     if (wanted != Form::kArcs) add_lines();
   }
 
+  void add_vertices() { make_best(offers_.vertices()); }
+
  private:
   [[nodiscard]] const RunFacts& facts() const { return result_.facts; }
 
@@ -146,7 +148,7 @@ class CurveForms {
     if (!candidate) return false;
     candidate->has_run_in_place = where != RunInPlace::kAtEnds;
     const double before = facts().scale.original.times.programmed;
-    const double part = offer.arcs == ArcsAlong::kVertices ? kCost.longer : kCost.mended;
+    const double part = offer.along == Along::kVertices ? kCost.longer : kCost.mended;
     const double more = std::max(facts().scale.period, part * before);
     if (candidate->figures.times.programmed > before + more) return false;
     result_.candidates.push_back(std::move(*candidate));
@@ -190,7 +192,7 @@ class CurveForms {
 
   [[nodiscard]] std::optional<Candidate> made(const Offer& offer) {
     if (task_.memo == nullptr) return newly_made(offer);
-    const RunMemo::PlanKey key{curve_.number, offer.form, offer.arcs, offer.options};
+    const RunMemo::PlanKey key{curve_.number, offer.form, offer.along, offer.options};
     return task_.memo->candidates.get(key, [&](std::size_t) {
       auto candidate = newly_made(offer);
       if (candidate) candidate->text.text.clear();
@@ -204,13 +206,16 @@ class CurveForms {
       return mended_plan(offer).with_run(offer.options.run_in_place, slower_by_);
     }
     if (offer.form == Form::kCurves) return plan_curves(run, curve_.path, offer.options);
+    if (offer.form == Form::kLines && offer.along == Along::kVertices) {
+      return plan_vertices(run, setting_.meant.fair(), curve_.path, offer.options);
+    }
     if (offer.form == Form::kLines) return plan_lines(run, curve_.path, pieces_, offer.options);
-    switch (offer.arcs) {
-      case ArcsAlong::kVertices:
+    switch (offer.along) {
+      case Along::kVertices:
         return plan_line_arcs(setting_.shape.value(), run, curve_.path, offer.options);
-      case ArcsAlong::kBand:
+      case Along::kBand:
         return plan_arc_spline(run, curve_.path, offer.options);
-      case ArcsAlong::kCurve:
+      case Along::kCurve:
         break;
     }
     return plan_arcs(run, curve_.path, pieces_, bends_, offer.options);
@@ -224,7 +229,8 @@ class CurveForms {
     if (!candidate) return std::nullopt;
     candidate->method = name_of(curve_.method);
     candidate->max_curvature = bends_.greatest();
-    candidate->rounds_seam = curve_.path.rounds_seam && offer.arcs == ArcsAlong::kCurve;
+    candidate->has_vertices = offer.form == Form::kLines && offer.along == Along::kVertices;
+    candidate->rounds_seam = curve_.path.rounds_seam && offer.along == Along::kCurve;
     const double off = setting_.meant.distance_of(plan->moves, curve_.path);
     candidate->figures.distance = std::hypot(off, facts().scale.printed);
     if (task_.scope == CandidateScope::kToRepeat) candidate->plan = plan;
@@ -283,6 +289,10 @@ class CurveForms {
 
 void add_forms(const FormSetting& setting, const CurveOfRun& curve, SmoothedRun& result) {
   CurveForms(setting, curve, result).add();
+}
+
+void add_vertices(const FormSetting& setting, const CurveOfRun& curve, SmoothedRun& result) {
+  CurveForms(setting, curve, result).add_vertices();
 }
 
 }  // namespace batten::postproc

@@ -117,7 +117,7 @@ std::vector<Offer> FormOffers::arcs() const {
 std::vector<Offer> FormOffers::line_arcs() const {
   if (!is_first_fair() || one_sided_ || !setting_.shape) return {};
   const double whole = given_.left + given_.curve.path.deviation;
-  return {{Form::kArcs, 0, 0, arcs_within(whole, whole), ArcsAlong::kVertices}};
+  return {{Form::kArcs, 0, 0, arcs_within(whole, whole), Along::kVertices}};
 }
 
 // Where few are wanted: the search finds one fewer here and there in a band that is a little less
@@ -135,10 +135,19 @@ std::vector<Offer> FormOffers::arc_splines() const {
     band.outside = whole - std::min(kFormTuning.for_control * whole,
                                     gcode::usual_chord_error(task_.options.target->chords));
     if (few) band.arc_effort = geometry::ArcEffort::kThorough;
-    offers.push_back({Form::kArcs, 0, 0, band, ArcsAlong::kBand});
+    offers.push_back({Form::kArcs, 0, 0, band, Along::kBand});
     if (task_.run.bends.empty() || !few) break;
   }
   return offers;
+}
+
+std::vector<Offer> FormOffers::vertices() const {
+  if (!is_first_fair() || one_sided_ || !task_.run.bends.empty()) return {};
+  if (facts_.off <= kFormTuning.over_printed * facts_.scale.printed) return {};
+  PlanOptions plan = within(given_.left);
+  plan.max_deviation = given_.left + given_.curve.path.deviation;
+  const auto lines = static_cast<double>(task_.run.points.size() - 1);
+  return {{Form::kLines, lines, 0, plan, Along::kVertices}};
 }
 
 std::vector<Offer> FormOffers::chords() const {

@@ -35,6 +35,9 @@ struct FormTuning {
   // Blocks, in parts of those before, that curves are expected in at most where none are asked for
   // and no time is left to win: each says several numbers for each axis.
   double curve_blocks = 0.5;
+  // Vertices are moved where chords are farther from the path (rms) than so many times what
+  // printing them again adds.
+  double over_printed = 2;
   double another = 0.9;               // of what is farther, at most, or it is the same again
   double bands[3] = {1, 0.97, 0.94};  // parts of the band around arcs in which few are looked for
   double of_height = 0.25;            // the rms of balanced chords by their height, at least
@@ -67,7 +70,7 @@ struct Offer {
   double blocks = 0;    // about
   double distance = 0;  // mm, rms from the path that was meant
   PlanOptions options;
-  ArcsAlong arcs = ArcsAlong::kCurve;
+  Along along = Along::kCurve;
 };
 
 // Of one curve. All must live as long. Empty where the target or the options let there be none;
@@ -89,6 +92,9 @@ class FormOffers {
 
   // In the band around the vertices themselves.
   [[nodiscard]] std::vector<Offer> arc_splines() const;
+
+  // Lines between the run's own vertices. Of the first curve alone, in runs of lines.
+  [[nodiscard]] std::vector<Offer> vertices() const;
 
   // Lines along the curve.
   [[nodiscard]] std::vector<Offer> chords() const;

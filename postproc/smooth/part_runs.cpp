@@ -287,12 +287,15 @@ class PartSmoother {
     return runs;
   }
 
-  // Whether something speaks against the run as a whole that may be true of a part of it only.
+  // Whether something speaks against forms of the run as a whole that may be true of a part of it
+  // only.
   static bool disappoints(const RunState& work) {
     const std::string_view kept = work.selection.reason;
-    return is_rejected_by_proof(work) || kept == gcode::reason::kNoGain ||
-           kept == gcode::reason::kSlower || kept == gcode::reason::kLarger ||
-           kept == gcode::reason::kFarther || kept == gcode::reason::kNoFit;
+    const Candidate* chosen = work.chosen();
+    return (chosen != nullptr && chosen->has_vertices) || is_rejected_by_proof(work) ||
+           kept == gcode::reason::kNoGain || kept == gcode::reason::kSlower ||
+           kept == gcode::reason::kLarger || kept == gcode::reason::kFarther ||
+           kept == gcode::reason::kNoFit;
   }
 
   // Returns the works that are new.

@@ -29,6 +29,9 @@ struct RunTuning {
   // no room to pass their ends; with so many times the tolerance there is.
   double takes_much = 0.35;
   double more_room = 3;
+  // By the tolerance the ends of chords can be moved so that chords of so many tolerances are
+  // clearly nearer.
+  double moves_reach = 2;
   double side_margin = 0.25;  // of the form's share, on the side where the run must not be cut
   double far_fewer = 0.7;     // of the blocks that there were
   // Part of the time, of a run of corners: the least that there must be left to win by a curve that
@@ -66,7 +69,8 @@ class RunSmoother {
 
   // Why the run is kept, or nothing.
   [[nodiscard]] std::string_view smooth() {
-    if (bounds_.is_hopeless()) return gcode::reason::kNoGain;
+    const bool is_hopeless = bounds_.is_hopeless();
+    if (is_hopeless && !may_move_vertices()) return gcode::reason::kNoGain;
     // The path that was meant has the corners of the program; they may be rounded where that wins
     // time.
     const Method method = options().method;
@@ -75,7 +79,14 @@ class RunSmoother {
     const bool sharp = !options().keep_corners_deg && has_sharp_corner(run().points);
     if (sharp) meant.keep_found_corner = kRun.sharp_corner;
     const auto fair = curve_by(Method::kFair, meant);
-    if (method == Method::kBest || method == Method::kFair) {
+    if (is_hopeless) {
+      result_.left_out = true;
+      if (fair) {
+        find_meant(fair->path, meant);
+        fits_ = true;
+        try_vertices(*fair);
+      }
+    } else if (method == Method::kBest || method == Method::kFair) {
       if (fair) {
         find_meant(fair->path, meant);
         add_candidates_of(*fair);
@@ -85,6 +96,7 @@ class RunSmoother {
           try_corners();
           try_tube();
         }
+        try_vertices(*fair);
       }
     } else if (const auto curve = curve_by(method, curve_request(method))) {
       find_meant((fair ? *fair : *curve).path, meant);
@@ -181,6 +193,24 @@ class RunSmoother {
     add_forms({task_, times_, bounds_, *meant_, shape_, budget_},
               {curve, bends, shares_.form, left, is_first_}, result_);
     is_first_ = false;
+  }
+
+  // Whether most chords are so near to a curve that their ends can be moved clearly nearer.
+  [[nodiscard]] bool may_move_vertices() const {
+    const double reach = kRun.moves_reach * tolerance_of(run(), options().tolerance_mm);
+    return (options().method == Method::kBest || options().method == Method::kFair) &&
+           coarse_part(run(), reach) < kBounds.coarse;
+  }
+
+  // Where no form is better than the run: its own vertices, moved.
+  void try_vertices(const RunCurve& fair) {
+    const Form wanted = options().output;
+    if (options().linearize || (wanted != Form::kAuto && wanted != Form::kLines)) return;
+    if (!fits_ || !choose(result_, options()).order.empty()) return;
+    const CurvatureProfile bends(fair.path.curve);
+    const double left = shares_.smoothing + shares_.form - fair.path.deviation;
+    add_vertices({task_, times_, bounds_, *meant_, shape_, budget_},
+                 {fair, bends, shares_.form, left}, result_);
   }
 
   // Where few blocks are wanted: a curve that leaves the vertices by some of the tolerance takes
@@ -400,6 +430,7 @@ std::optional<SmoothedRun> smooth_repeat(const Run& run, const RunContext& conte
     here->method = there.method;
     here->max_curvature = there.max_curvature;
     here->rounds_seam = there.rounds_seam;
+    here->has_vertices = there.has_vertices;
     here->figures.distance = there.figures.distance;
     result.candidates.push_back(std::move(*here));
   }

@@ -46,9 +46,9 @@ struct OutputPlan {
 // Where the run stands in place of lines and arcs (slow_parts.h).
 enum class RunInPlace : std::uint8_t { kNowhere, kAtEnds, kWhereNeeded, kEverywhere };
 
-// What arcs follow: the curve (plan_arcs), the band around the vertices (plan_arc_spline), or the
-// vertices themselves (line_arcs.h).
-enum class ArcsAlong : std::uint8_t { kCurve, kBand, kVertices };
+// What a form follows: the curve; the band around the vertices (plan_arc_spline); or the vertices
+// themselves: lines and arcs that they are on (line_arcs.h), lines between them (plan_vertices).
+enum class Along : std::uint8_t { kCurve, kBand, kVertices };
 
 struct PlanOptions {
   const gcode::Control* target = nullptr;
@@ -117,6 +117,14 @@ inline constexpr PlanTuning kPlans;
 [[nodiscard]] OutputPlan plan_lines(const Run& run, const geometry::SmoothCurve& fair,
                                     const geometry::MarkedPieces& pieces,
                                     const PlanOptions& options);
+
+// The run's own vertices, moved, none by more than max_deviation: to where lines between them lie
+// as much outside of the bends of `meant` as inside (geometry::balanced_chords). As many lines as
+// the run has, each no farther than that from its own. `fair`: that `start` of the moves is of. For
+// runs of lines; both curves have one parameter per point.
+[[nodiscard]] OutputPlan plan_vertices(const Run& run, const geometry::SmoothCurve& meant,
+                                       const geometry::SmoothCurve& fair,
+                                       const PlanOptions& options);
 
 // Arcs in a plane that the target takes arcs in and that the run lies in, the active plane first. A
 // run in space: helices and lines in the plane that needs the fewest, where they are fewer than the

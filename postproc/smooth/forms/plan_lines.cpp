@@ -195,4 +195,28 @@ OutputPlan plan_lines(const Run& run, const geometry::SmoothCurve& fair, const M
   return plan;
 }
 
+OutputPlan plan_vertices(const Run& run, const geometry::SmoothCurve& meant,
+                         const geometry::SmoothCurve& fair, const PlanOptions& options) {
+  Vertices places = geometry::nearest_chords(meant.curve, meant.vertex_parameters);
+  places.front().place = run.points.front();
+  places.back().place = run.points.back();
+  for (std::size_t i = 1; i + 1 < places.size(); ++i) {
+    const geometry::Vector3 way = places[i].place - run.points[i];
+    places[i].place = run.points[i] + way / std::max(1.0, way.norm() / options.max_deviation);
+  }
+  OutputPlan plan;
+  plan.form = Form::kLines;
+  auto change = run.feeds.begin();
+  double feed = run.feeds.front().feed;
+  for (std::size_t i = 0; i + 1 < places.size(); ++i) {
+    for (; change != run.feeds.end() && change->vertex <= i; ++change) feed = change->feed;
+    plan.moves.push_back({geometry::Line{places[i].place, places[i + 1].place},
+                          feed,
+                          {},
+                          fair.vertex_parameters[i]});
+  }
+  place_comments(run, fair, plan);
+  return plan;
+}
+
 }  // namespace batten::postproc

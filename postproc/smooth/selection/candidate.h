@@ -55,6 +55,7 @@ struct Candidate {
   bool chords_for_steps = false;  // see OutputPlan
   bool arcs_as_chords = false;
   bool has_run_in_place = false;        // in parts where its form alone would be slower
+  bool has_vertices = false;            // the run's own, moved: see plan_vertices
   bool rounds_seam = false;             // see geometry::SmoothCurve
   std::vector<TimedPiece> moves;        // of a piece of a run, and in a RunMemo; empty otherwise
   std::optional<OutputPlan> plan = {};  // where it is asked for (CandidateScope)
@@ -105,7 +106,7 @@ struct RunMemo {
   using CurveKey = std::tuple<Method, double, double, double, double, bool, bool>;
   Made<CurveKey, std::optional<RunCurve>> curves;
   // Of which curve, in which form, along what, and how.
-  using PlanKey = std::tuple<std::size_t, Form, ArcsAlong, PlanOptions>;
+  using PlanKey = std::tuple<std::size_t, Form, Along, PlanOptions>;
   Made<PlanKey, std::optional<Candidate>> candidates;
 };
 

@@ -28,6 +28,8 @@ class MeantPath {
   explicit MeantPath(const geometry::SmoothCurve& fair, Moves shape = {})
       : fair_(fair), shape_(std::move(shape)) {}
 
+  [[nodiscard]] const geometry::SmoothCurve& fair() const { return fair_; }
+
   // mm, rms along the path, of the run's chords and of moves that were planned along a curve
   // of the same run. Deterministic, linear in the moves up to a number of them.
   [[nodiscard]] double distance_of(const Run& run) const;

@@ -68,7 +68,7 @@ Selection choose(const SmoothedRun& run, const SmoothOptions& options, Among amo
   std::optional<Ranked> cheapest;  // of those that something speaks against
   for (std::size_t i = 0; i < run.candidates.size(); ++i) {
     const Candidate& c = run.candidates[i];
-    if (among == Among::kFormsAlone && c.has_run_in_place) continue;
+    if (among == Among::kFormsAlone && (c.has_run_in_place || c.has_vertices)) continue;
     const Ranked here{is_forced(c.form, run.facts, options),
                       cost_of(c.figures, run.facts.scale, options.prefer), i};
     const std::string_view against = reason_against(c.figures, c.form, run.facts, options);

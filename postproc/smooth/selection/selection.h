@@ -28,7 +28,7 @@ struct Selection {
 [[nodiscard]] std::string_view reason_against(const Figures& figures, Form form,
                                               const RunFacts& facts, const SmoothOptions& options);
 
-// Of all candidates, or without those that have the run in place of parts of a form.
+// Of all candidates, or without those that have the run, or its vertices, in place of a form.
 enum class Among { kAll, kFormsAlone };
 
 [[nodiscard]] Selection choose(const SmoothedRun& run, const SmoothOptions& options,
