@@ -294,7 +294,7 @@ class Search {
     const double radius = 1 / curvature;
     const Point2 center = entry.place + radius * left;
     const Vector2 out = sample - center;
-    return center + std::abs(radius) / out.norm() * out;
+    return center + std::abs(radius) / std::max(out.norm(), kSamePlace) * out;
   }
 
   [[nodiscard]] std::optional<Stop> stop_on(std::size_t from, double curvature,

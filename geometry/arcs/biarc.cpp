@@ -73,6 +73,19 @@ bool stays_near_line(const PlaneCubic& piece, double deviation) {
 
 }  // namespace
 
+double turn_between(const Vector2& from, const Vector2& to) {
+  const double across = cross(from, to);
+  const double ahead = from.dot(to);
+  // Up to here the series leaves out what is below rounding.
+  constexpr double kSmallTangent = 0.125;
+  if (!(std::abs(across) <= kSmallTangent * ahead && ahead > 0)) return std::atan2(across, ahead);
+  const double tangent = across / ahead;
+  const double t = tangent * tangent;
+  const double tail = 1.0 / 11 + t * (-1.0 / 13 + t * (1.0 / 15 - t / 17));
+  const double sum = -1.0 / 3 + t * (1.0 / 5 + t * (-1.0 / 7 + t * (1.0 / 9 - t * tail)));
+  return tangent * (1 + t * sum);
+}
+
 double PlaneArc::length() const {
   return is_line() ? (end - start).norm() : radius * std::abs(sweep);
 }

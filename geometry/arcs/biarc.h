@@ -89,6 +89,9 @@ struct ArcRange {
   ArcRunning running;
 };
 
+// Radians, signed, positive to the left. Quick where it is small.
+[[nodiscard]] double turn_between(const Vector2& from, const Vector2& to);
+
 // The arc between two points that turns by `sweep`; a line when it is flatter than
 // `max_radius`.
 [[nodiscard]] PlaneArc arc_with_sweep(const Point2& start, const Point2& end, double sweep,

@@ -14,23 +14,6 @@ constexpr PlaneBandTuning kBand = kPlaneBandTuning;
 
 double heading_of(const Vector2& v) { return std::atan2(v.y(), v.x()); }
 
-// Radians, for |tangent| <= kSmallTangent: what the series leaves out is below rounding.
-constexpr double kSmallTangent = 0.125;
-
-double small_angle(double tangent) {
-  const double t = tangent * tangent;
-  const double tail = 1.0 / 11 + t * (-1.0 / 13 + t * (1.0 / 15 - t / 17));
-  const double sum = -1.0 / 3 + t * (1.0 / 5 + t * (-1.0 / 7 + t * (1.0 / 9 - t * tail)));
-  return tangent * (1 + t * sum);
-}
-
-double turn_between(const Vector2& from, const Vector2& to) {
-  const double across = cross(from, to);
-  const double ahead = from.dot(to);
-  return std::abs(across) <= kSmallTangent * ahead ? small_angle(across / ahead)
-                                                   : std::atan2(across, ahead);
-}
-
 // A fan that closes sample by sample. An arc from the origin along the first axis with
 // curvature k passes a place (x, y) at a distance of at most e when
 //   k (x^2 + y^2 - e^2) lies between 2 (y - e) and 2 (y + e),
@@ -86,6 +69,9 @@ class ClosingFan {
   double steepest_;
   double squared_ = 0;
 };
+
+// Radians from the ray before it: no turn is lost.
+constexpr double kNearRay = 0.125;
 
 // Length along a line or an arc, and distance across it, of places near it.
 class ArcMeter {
@@ -183,14 +169,13 @@ class ArcMeter {
   }
 
   // How far the arc has turned where it passes this ray from its centre: from the ray before it
-  // where that is near, for an arctangent costs more than all the rest.
+  // where that is near.
   double angle_to(const Vector2& way) {
-    const double across = cross(before_, way);
-    const double ahead = before_.dot(way);
-    if (std::abs(across) <= kSmallTangent * ahead && ahead > 0) {
-      angle_ += turn_ * small_angle(across / ahead);
+    const double more = turn_between(before_, way);
+    if (std::abs(more) < kNearRay) {
+      angle_ += turn_ * more;
     } else {
-      angle_ = turn_ * std::atan2(cross(first_, way), first_.dot(way));
+      angle_ = turn_ * turn_between(first_, way);
       if (angle_ < -(kPi - std::abs(arc_.sweep) / 2)) angle_ += 2 * kPi;
     }
     before_ = way;

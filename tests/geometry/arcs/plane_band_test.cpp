@@ -128,6 +128,21 @@ TEST(PlaneBand, AnArcWithinTheToleranceIsPassed) {
   }
 }
 
+TEST(PlaneBand, AnArcThatGoesOnAtASampleIsPassedToTheNextOne) {
+  const auto points = on_circle(20, 200, 2.5);
+  const PlaneBand band(points, limits());
+  const auto& samples = band.samples();
+  const BandEntry entry{{20, 0}, {0, 1}, 1};
+  for (std::size_t i = 40; i + 1 < samples.size(); i += 30) {
+    const Point2& place = samples[i].place;
+    const double at = std::atan2(place.y(), place.x());
+    // Just before the sample it ends before it; at the sample and just after it, after it.
+    EXPECT_EQ(band.passed(entry, arc_about_origin(20, at - 1e-6), kSides), i);
+    EXPECT_EQ(band.passed(entry, arc_about_origin(20, at), kSides), i + 1);
+    EXPECT_EQ(band.passed(entry, arc_about_origin(20, at + 1e-6), kSides), i + 1);
+  }
+}
+
 TEST(PlaneBand, AnArcBeyondTheToleranceIsNot) {
   const PlaneBand band(on_circle(20, 200, 2.5), limits());
   for (const double off : {0.0102, -0.0102}) {
