@@ -46,6 +46,26 @@ void search_farthest(double from, double limit, double guess, double shortest, d
   }
 }
 
+// Where a cubic with these Bernstein coefficients goes from below 0 to above it, between two
+// parameters: by Newton's method, which stays between the places known to be below and above.
+double passed_at(const std::array<double, 4>& b, double below, double above) {
+  constexpr double kNoise = 1e-7;  // of the cubic, far below what a joint may be off
+  constexpr int kHalvings = 24;    // come to that, where Newton's method does not
+  double t = (below + above) / 2;
+  for (int step = 0; step < kHalvings; ++step) {
+    const double s = 1 - t;
+    const double value = s * s * (s * b[0] + 3 * t * b[1]) + t * t * (3 * s * b[2] + t * b[3]);
+    const double slope =
+        3 * (s * s * (b[1] - b[0]) + 2 * s * t * (b[2] - b[1]) + t * t * (b[3] - b[2]));
+    (value < 0 ? below : above) = t;
+    const double next = t - value / slope;
+    const double before = t;
+    t = next >= below && next <= above ? next : (below + above) / 2;
+    if (std::abs(t - before) <= kNoise) break;
+  }
+  return t;
+}
+
 // Of `first` of a pair of arcs, relative to the value for which both are equal.
 std::span<const double> joint_balances() {
   constexpr int kPlaces = kChain.joint_places;
@@ -172,8 +192,9 @@ class ArcChain {
            (arc.radius >= limits_.min_radius && std::abs(arc.sweep) <= limits_.max_sweep);
   }
 
-  bool heights_hold(const PlaneArc& arc, double from, double to, double from_height,
-                    double to_height) const {
+  bool slopes_hold(const PlaneArc& arc, double from, double to, double from_height,
+                   double to_height) const {
+    if (limits_.flat) return true;
     const double length = arc.length();
     if (length <= kSamePlace) return false;
     const double slope = (to_height - from_height) / length;
@@ -182,17 +203,20 @@ class ArcChain {
     for (double u : {from + inside, to - inside}) {
       if (!(std::abs(curve_.slope_at(u) - slope) <= slope_error)) return false;
     }
-    const auto way = [&arc](const Point2& p) {
-      if (arc.is_line()) {
-        const Vector2 chord = arc.end - arc.start;
-        return (p - arc.start).dot(chord) / chord.squaredNorm();
-      }
-      const Vector2 r0 = arc.start - arc.center;
-      const Vector2 r = p - arc.center;
-      // From the middle of the arc, where no angle wraps.
-      const Vector2 middle(std::cos(arc.sweep / 2) * r0.x() - std::sin(arc.sweep / 2) * r0.y(),
-                           std::sin(arc.sweep / 2) * r0.x() + std::cos(arc.sweep / 2) * r0.y());
-      return 0.5 + std::atan2(cross(middle, r), middle.dot(r)) / arc.sweep;
+    return true;
+  }
+
+  bool heights_hold(const PlaneArc& arc, double from, double to, double from_height,
+                    double to_height) const {
+    const Vector2 chord = arc.end - arc.start;
+    const Vector2 r0 = arc.start - arc.center;
+    // The middle of the arc, from which no angle wraps.
+    const double cosine = std::cos(arc.sweep / 2);
+    const double sine = std::sin(arc.sweep / 2);
+    const Vector2 middle(cosine * r0.x() - sine * r0.y(), sine * r0.x() + cosine * r0.y());
+    const auto way = [&](const Point2& p) {
+      if (arc.is_line()) return (p - arc.start).dot(chord) / chord.squaredNorm();
+      return 0.5 + turn_between(middle, p - arc.center) / arc.sweep;
     };
     // Samples: the ends and three places within each span; the error is a smooth function on
     // each, and the plan's tenth of a margin is left for what lies between.
@@ -213,6 +237,7 @@ class ArcChain {
   bool holds(const PlaneArc& arc, double from, double to, double from_height,
              double to_height) const {
     if (!allowed(arc) || !(to > from)) return false;
+    if (!slopes_hold(arc, from, to, from_height, to_height)) return false;
     const double length = std::hypot(arc.length(), to_height - from_height);
     const ArcSides sides = limits_.running.sides_of(arc, length, limits_.deviation, from, to);
     if (!sides.any()) return false;
@@ -227,27 +252,26 @@ class ArcChain {
   // Where the curve passes the normal through the joint.
   double joint_parameter(const Point2& joint, const Vector2& tangent, double from,
                          double to) const {
-    const auto before = [&](std::size_t piece, double u) {
-      return (in_plane(curve_.point_in(piece, u)) - joint).dot(tangent) < 0;
+    const auto before = [&](std::size_t piece) {
+      return (in_plane(curve_.piece(piece).control[0]) - joint).dot(tangent) < 0;
     };
     const auto& breaks = curve_.breaks();
     std::size_t low = curve_.index_of(from);
     std::size_t high = curve_.index_of(to);
     while (low < high) {  // the last piece whose start is before the joint
       const std::size_t middle = (low + high + 1) / 2;
-      if (breaks[middle] <= from || before(middle, breaks[middle])) {
+      if (breaks[middle] <= from || before(middle)) {
         low = middle;
       } else {
         high = middle - 1;
       }
     }
-    double good = std::max(from, breaks[low]);
-    double bad = std::min(to, breaks[low + 1]);
-    for (int step = 0; step < kChain.joint_halvings; ++step) {
-      const double middle = (good + bad) / 2;
-      (before(low, middle) ? good : bad) = middle;
+    std::array<double, 4> ahead;  // of the joint: control points of the piece, mm
+    for (std::size_t i = 0; i < 4; ++i) {
+      ahead[i] = (in_plane(curve_.piece(low).control[i]) - joint).dot(tangent);
     }
-    return (good + bad) / 2;
+    const double t = passed_at(ahead, curve_.local(low, from), curve_.local(low, to));
+    return breaks[low] + t * (breaks[low + 1] - breaks[low]);
   }
 
   std::optional<ArcPair> pair_between(const ChainNode& start, const ChainNode& end,
@@ -285,7 +309,10 @@ class ArcChain {
     pair.joint_u = joint_parameter(pair.first.end, pair.tangent, start.u, pair.end.u);
     if (!is_passed(pair.first.end, pair.joint_u)) return false;
     if (!limits_.flat) pair.joint_height = rounded(curve_.point_at(pair.joint_u)).z();
-    return holds(pair.first, start.u, pair.joint_u, start.place.z(), pair.joint_height) &&
+    // The proof of the first one takes long.
+    return slopes_hold(pair.second, pair.joint_u, pair.end.u, pair.joint_height,
+                       pair.end.place.z()) &&
+           holds(pair.first, start.u, pair.joint_u, start.place.z(), pair.joint_height) &&
            holds(pair.second, pair.joint_u, pair.end.u, pair.joint_height, pair.end.place.z());
   }
 
@@ -374,8 +401,7 @@ class ArcChain {
           arc_leaving(in_plane(start.place), leaving, in_plane(node.place), limits_.max_radius);
       const double length = arc.length();
       if (length <= kSamePlace ||
-          std::abs(arc.sweep - (node.angle - start.angle)) > kChain.most_turned ||
-          !holds(arc, start.u, u, start.place.z(), node.place.z())) {
+          std::abs(arc.sweep - (node.angle - start.angle)) > kChain.most_turned) {
         return false;
       }
       double wanted = node.angle;
@@ -385,7 +411,10 @@ class ArcChain {
         most = kChain.crossing_noise * limits_.deviation / length;
         node.angle = start.angle + arc.sweep;
       }
-      if (std::abs(start.angle + arc.sweep - wanted) > most) return false;
+      if (std::abs(start.angle + arc.sweep - wanted) > most ||
+          !holds(arc, start.u, u, start.place.z(), node.place.z())) {
+        return false;
+      }
       if (!best || u > best->end.u) best = Step{{{arc, node.place.z()}}, node, {}};
       return true;
     };

@@ -52,7 +52,6 @@ struct ArcChainTuning {
   double shortest_in_grids = 10;  // a shorter step's tangent is turned 0.1 radians by rounding
   double shortest = 1e-5;         // mm, without a grid [>]
   double part_of_section = 0.01;  // is short in any case: a closed section has no span [<]
-  int joint_halvings = 24;        // 1e-7 of a piece [<]
   int joint_places = 40;          // to each side, that are tried for a joint near the grid
   double widest_joint = 1.3;      // balance: beyond, one arc is much shorter than the other
 };

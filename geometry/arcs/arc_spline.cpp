@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <numeric>
@@ -56,14 +57,65 @@ constexpr ArcSplineTuning kSpline = kArcSplineTuning;
 struct Stop {
   BandEntry entry;
   std::ptrdiff_t before = -1;  // the node from which an arc arrives here
-  std::size_t reach = 0;
-  double score = 0;
+  std::size_t reach = 0;       // of the next arc; 0: not judged yet
+  double score = 0;            // of a stop that is not judged: a bound that it is below
 };
 
 struct Node : Stop {
   PlaneArc arc;       // that arrives here
   bool kink = false;  // the chain turns here
 };
+
+// The best stops of a level so far, no more of one place than are followed.
+class LeadingStops {
+ public:
+  LeadingStops(std::size_t most, std::ptrdiff_t of_one_place)
+      : most_(most), of_one_place_(of_one_place) {}
+
+  void clear() { leads_.clear(); }
+
+  [[nodiscard]] bool takes(const Stop& stop) const {
+    return leads_.size() < most_ || stop.score > leads_.back().score;
+  }
+
+  // `index`: by which the caller knows it. Of equal ones the first stays first.
+  void add(const Stop& stop, std::size_t index) {
+    const auto same = [&](const Lead& lead) { return lead.place == stop.entry.next; };
+    const auto after =
+        std::ranges::find_if(leads_, [&](const Lead& lead) { return lead.score < stop.score; });
+    if (std::count_if(leads_.begin(), after, same) >= of_one_place_) return;
+    leads_.insert(after, {stop.score, stop.reach, stop.entry.next, index});
+    if (std::ranges::count_if(leads_, same) > of_one_place_) {
+      leads_.erase(std::next(std::find_if(leads_.rbegin(), leads_.rend(), same)).base());
+    }
+    if (leads_.size() > most_) leads_.pop_back();
+  }
+
+  // A stop that reaches less far is none of them.
+  [[nodiscard]] std::size_t least_reach() const {
+    return leads_.size() < most_ ? 0 : leads_.back().reach;
+  }
+
+  struct Lead {
+    double score;
+    std::size_t reach;
+    std::size_t place;
+    std::size_t index;
+  };
+
+  // The best first.
+  [[nodiscard]] const std::vector<Lead>& leads() const { return leads_; }
+
+ private:
+  std::size_t most_;
+  std::ptrdiff_t of_one_place_;
+  std::vector<Lead> leads_;
+};
+
+// std::round without a call, for what is far below 2^63.
+double nearest_whole(double value) {
+  return static_cast<double>(static_cast<std::int64_t>(value + (value < 0 ? -0.5 : 0.5)));
+}
 
 double angle_between(const Vector2& from, const Vector2& to) {
   return std::atan2(cross(from, to), from.dot(to));
@@ -78,6 +130,8 @@ class Search {
         band_(points, {options.tolerance, options.outside, 1 / options.min_radius,
                        options.max_sweep, effort_.stride}),
         count_(band_.samples().size()),
+        per_grid_(1 / options.grid),
+        leading_(effort_.width, effort_.of_one_place),
         best_arcs_(at_most + 1) {
     if (options.end_angle) end_along_ = unit_vector(*options.end_angle);
   }
@@ -104,12 +158,13 @@ class Search {
     for (const std::size_t i : level) finish(i, arcs);
     // A chain that goes on from here has two arcs more at the least: no better than the best.
     if (arcs + 2 >= best_arcs_) return;
-    std::vector<Stop> found;
+    found_.clear();
+    leading_.clear();
     for (const std::size_t i : level) {
-      spread(i, found);
+      spread(i);
       if (options_.kinks) turn_at_corner(i, arcs);
     }
-    follow(found, arcs + 1);
+    follow(arcs + 1);
     if (options_.kinks && levels_.size() <= arcs + 1 && !best_) turn_where_stuck(level, arcs);
   }
 
@@ -129,6 +184,54 @@ class Search {
       const double step = samples[reach.end].station - stop.score;
       stop.score += 0.5 * step * std::min(1.0, reach.margin / options_.tolerance);
     }
+  }
+
+  // Judges it where it may be one of the leading ones.
+  void consider(Stop stop) {
+    if (may_lead(stop)) {
+      judge(stop);
+      leading_.add(stop, found_.size());
+    } else {
+      stop.score = band_.samples()[leading_.least_reach() - 1].station;
+    }
+    found_.push_back(stop);
+  }
+
+  // The same where arcs are not run as they are: then a nearer one may be better, or the only one.
+  // Most do not hold; those are left out at once.
+  void consider_run(const Stop& stop, double curvature) {
+    const BandEntry& entry = nodes_[static_cast<std::size_t>(stop.before)].entry;
+    const PlaneArc arc = node_of(stop).arc;
+    if (arc.is_line()) return consider_held(stop, arc, {options_.tolerance, options_.tolerance});
+    const double length = arc.length();
+    const double from = station_of(entry);
+    const ArcRunning::Run run = options_.running.run_of(arc, length, from, from + length);
+    const double part = run.good_part(std::min(options_.outside, options_.tolerance));
+    if (part < 1) {
+      if (const auto nearer = nearer_stop(stop, curvature, part * length)) {
+        if (may_lead(*nearer)) {
+          const PlaneArc shorter = node_of(*nearer).arc;
+          consider_held(*nearer, shorter, sides_of(shorter, from));
+        }
+      }
+    }
+    consider_held(stop, arc, run.sides_within(options_.tolerance));
+  }
+
+  void consider_held(Stop stop, const PlaneArc& arc, const ArcSides& sides) {
+    if (!sides.any() || !may_lead(stop)) return;
+    judge(stop);
+    if (!leading_.takes(stop)) return;
+    const BandEntry& entry = nodes_[static_cast<std::size_t>(stop.before)].entry;
+    const auto passed = band_.passed(entry, arc, sides);
+    if (!passed || *passed < entry.next) return;
+    leading_.add(stop, found_.size());
+    found_.push_back(stop);
+  }
+
+  [[nodiscard]] bool may_lead(const Stop& stop) const {
+    const std::size_t least = leading_.least_reach();
+    return least < count_ && band_.may_reach(stop.entry, least);
   }
 
   void add_starts() {
@@ -153,8 +256,8 @@ class Search {
 
   [[nodiscard]] Point2 rounded(const Point2& p) const {
     if (!(options_.grid > 0)) return p;
-    return {std::round(p.x() / options_.grid) * options_.grid,
-            std::round(p.y() / options_.grid) * options_.grid};
+    return {nearest_whole(p.x() * per_grid_) * options_.grid,
+            nearest_whole(p.y() * per_grid_) * options_.grid};
   }
 
   // The stop there, for the arc that leaves node `from` along its tangent: a line where that is
@@ -162,11 +265,9 @@ class Search {
   [[nodiscard]] Stop stop_at(std::size_t from, const Point2& end, std::size_t next) const {
     const BandEntry& entry = nodes_[from].entry;
     const Vector2 chord = end - entry.place;
-    Stop stop;
-    stop.before = static_cast<std::ptrdiff_t>(from);
-    stop.entry = {
-        end, is_flat(entry.along, chord) ? chord.normalized() : mirrored(entry.along, chord), next};
-    return stop;
+    const bool flat = is_flat(entry.along, chord);
+    return {{end, flat ? chord.normalized() : mirrored(entry.along, chord), next},
+            static_cast<std::ptrdiff_t>(from)};
   }
 
   [[nodiscard]] bool is_flat(const Vector2& along, const Vector2& chord) const {
@@ -190,8 +291,10 @@ class Search {
     const Vector2 left(-entry.along.y(), entry.along.x());
     const Vector2 way = sample - entry.place;
     if (curvature == 0) return entry.place + way.dot(entry.along) * entry.along;
-    const Point2 center = entry.place + left / curvature;
-    return center + (sample - center).normalized() / std::abs(curvature);
+    const double radius = 1 / curvature;
+    const Point2 center = entry.place + radius * left;
+    const Vector2 out = sample - center;
+    return center + std::abs(radius) / std::max(out.norm(), kSamePlace) * out;
   }
 
   [[nodiscard]] std::optional<Stop> stop_on(std::size_t from, double curvature,
@@ -210,16 +313,11 @@ class Search {
     return band_.samples()[entry.next - 1].station;
   }
 
-  // A stop that is nearer, where the arc to this one would be run too far off.
-  [[nodiscard]] std::optional<Stop> nearer_stop(const Stop& stop, double curvature) const {
+  // A stop that is nearer: so long is its arc.
+  [[nodiscard]] std::optional<Stop> nearer_stop(const Stop& stop, double curvature,
+                                                double length) const {
     const BandEntry& entry = nodes_[static_cast<std::size_t>(stop.before)].entry;
-    const PlaneArc arc = node_of(stop).arc;
-    const double from = station_of(entry);
-    const double length = arc.length();
-    const double part = options_.running.good_part_of(
-        arc, std::min(options_.outside, options_.tolerance), from, from + length);
-    if (part >= 1 || curvature == 0) return std::nullopt;
-    const double turn = part * length * curvature;
+    const double turn = length * curvature;
     const Vector2 left(-entry.along.y(), entry.along.x());
     const Point2 end = rounded(entry.place + std::sin(turn) / curvature * entry.along +
                                (1 - std::cos(turn)) / curvature * left);
@@ -227,12 +325,12 @@ class Search {
     if (chord.norm() <= 2 * options_.grid + kSamePlace || is_flat(entry.along, chord)) {
       return std::nullopt;
     }
-    const std::size_t last = sample_at(from + part * length, entry.next, stop.entry.next - 1);
+    const std::size_t last = sample_at(station_of(entry) + length, entry.next, stop.entry.next - 1);
     return stop_at(static_cast<std::size_t>(stop.before), end, last + 1);
   }
 
   // Every arc from node i that is worth a look.
-  void spread(std::size_t i, std::vector<Stop>& found) const {
+  void spread(std::size_t i) {
     const ArcFan fan = band_.fan(nodes_[i].entry);
     const auto& samples = band_.samples();
     const std::size_t next = nodes_[i].entry.next;
@@ -248,14 +346,7 @@ class Search {
       const auto add = [&](double curvature) {
         auto stop = stop_on(i, curvature, j);
         if (!stop) return;
-        if (options_.running.error) {
-          if (auto nearer = nearer_stop(*stop, curvature)) {
-            judge(*nearer);
-            found.push_back(*nearer);
-          }
-        }
-        judge(*stop);
-        found.push_back(*stop);
+        options_.running.error ? consider_run(*stop, curvature) : consider(*stop);
       };
       if (range.low < 0 && range.high > 0) add(0);
       for (const double place : effort_.in_range) {
@@ -277,30 +368,50 @@ class Search {
   }
 
   // Keeps the best of the found ones that hold.
-  void follow(const std::vector<Stop>& found, std::size_t arcs) {
+  void follow(std::size_t arcs) {
+    std::vector<Node> kept;
+    for (const LeadingStops::Lead& lead : leading_.leads()) {
+      auto node = held(found_[lead.index]);
+      if (!node) return follow_all(arcs);  // another one of that place takes its turn
+      kept.push_back(std::move(*node));
+    }
+    for (Node& node : kept) add_to(arcs, std::move(node));
+  }
+
+  // The same, one after the other, those too that were not judged.
+  void follow_all(std::size_t arcs) {
     const auto is_after = [&](std::size_t a, std::size_t b) {
-      return found[a].score < found[b].score || (found[a].score == found[b].score && a > b);
+      return found_[a].score < found_[b].score || (found_[a].score == found_[b].score && a > b);
     };
-    std::vector<std::size_t> order(found.size());  // a heap, the best one first
+    std::vector<std::size_t> order(found_.size());  // a heap, the best one first
     std::iota(order.begin(), order.end(), 0);
     std::ranges::make_heap(order, is_after);
-    std::vector<std::pair<std::size_t, int>> of_place;  // how many were kept of a place
-    for (std::size_t kept = 0; !order.empty() && kept < effort_.width; order.pop_back()) {
+    std::vector<std::size_t> places;  // of those that are kept
+    while (!order.empty() && places.size() < effort_.width) {
       std::ranges::pop_heap(order, is_after);
-      const Stop& stop = found[order.back()];
-      const std::size_t place = stop.entry.next;
-      auto same = std::ranges::find(of_place, place, &std::pair<std::size_t, int>::first);
-      if (same != of_place.end() && same->second == effort_.of_one_place) continue;
-      Node node = node_of(stop);
-      const BandEntry& from = nodes_[static_cast<std::size_t>(node.before)].entry;
-      const auto passed = passes(from, node.arc);
-      if (!passed || *passed < from.next) continue;
-      if (same == of_place.end()) same = of_place.insert(same, {place, 0});
-      ++same->second;
-      node.entry.next = *passed;
-      add_to(arcs, node);
-      ++kept;
+      Stop& stop = found_[order.back()];
+      if (stop.reach == 0) {
+        judge(stop);
+        std::ranges::push_heap(order, is_after);
+        continue;
+      }
+      order.pop_back();
+      if (std::ranges::count(places, stop.entry.next) == effort_.of_one_place) continue;
+      auto node = held(stop);
+      if (!node) continue;
+      places.push_back(stop.entry.next);
+      add_to(arcs, std::move(*node));
     }
+  }
+
+  // With the arc that arrives there, where it holds.
+  [[nodiscard]] std::optional<Node> held(const Stop& stop) const {
+    Node node = node_of(stop);
+    const BandEntry& from = nodes_[static_cast<std::size_t>(node.before)].entry;
+    const auto passed = passes(from, node.arc);
+    if (!passed || *passed < from.next) return std::nullopt;
+    node.entry.next = *passed;
+    return node;
   }
 
   void offer(Node node, std::size_t arcs) {
@@ -362,11 +473,13 @@ class Search {
 
   [[nodiscard]] std::optional<std::size_t> passes(const BandEntry& entry,
                                                   const PlaneArc& arc) const {
+    return band_.passed(entry, arc, sides_of(arc, station_of(entry)));
+  }
+
+  // Of an arc that starts beside this station.
+  [[nodiscard]] ArcSides sides_of(const PlaneArc& arc, double from) const {
     const double length = arc.length();
-    const double from = station_of(entry);
-    return band_.passed(
-        entry, arc,
-        options_.running.sides_of(arc, length, options_.tolerance, from, from + length));
+    return options_.running.sides_of(arc, length, options_.tolerance, from, from + length);
   }
 
   [[nodiscard]] bool allowed(const PlaneArc& arc) const {
@@ -421,8 +534,9 @@ class Search {
     const auto passed = passes(from, node.arc);
     if (!passed || *passed >= count_ || *passed <= from.next) return false;
     node.kink = true;
+    const Vector2& edge_way = band_.samples()[sample + 1].edge_way;
     for (const double off : kStarts) {
-      const Vector2 along = unit_vector(band_.samples()[sample + 1].edge_angle + off);
+      const Vector2 along = unit_vector(std::atan2(edge_way.y(), edge_way.x()) + off);
       node.entry = {node.arc.end, along, *passed};
       judge(node);
       add_to(arcs + 1 + kSpline.kink_costs, node);
@@ -447,8 +561,11 @@ class Search {
   const Effort& effort_;
   PlaneBand band_;
   std::size_t count_;
+  double per_grid_;  // 1/mm
   std::optional<Vector2> end_along_;
   std::vector<Node> nodes_;
+  std::vector<Stop> found_;                       // from the nodes of a level
+  LeadingStops leading_;                          // of those
   std::vector<std::vector<std::size_t>> levels_;  // nodes by the number of arcs so far
   std::size_t best_arcs_;                         // what the best chain so far costs
   std::optional<std::size_t> best_;               // its last node

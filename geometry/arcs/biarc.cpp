@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 #include <variant>
 
 #include "geometry/basic/point.h"
@@ -71,6 +72,19 @@ bool stays_near_line(const PlaneCubic& piece, double deviation) {
 }
 
 }  // namespace
+
+double turn_between(const Vector2& from, const Vector2& to) {
+  const double across = cross(from, to);
+  const double ahead = from.dot(to);
+  // Up to here the series leaves out what is below rounding.
+  constexpr double kSmallTangent = 0.125;
+  if (!(std::abs(across) <= kSmallTangent * ahead && ahead > 0)) return std::atan2(across, ahead);
+  const double tangent = across / ahead;
+  const double t = tangent * tangent;
+  const double tail = 1.0 / 11 + t * (-1.0 / 13 + t * (1.0 / 15 - t / 17));
+  const double sum = -1.0 / 3 + t * (1.0 / 5 + t * (-1.0 / 7 + t * (1.0 / 9 - t * tail)));
+  return tangent * (1 + t * sum);
+}
 
 double PlaneArc::length() const {
   return is_line() ? (end - start).norm() : radius * std::abs(sweep);
@@ -172,36 +186,34 @@ void append_crossings(const Arc& arc, const Vector3& quadrant_from, std::vector<
   for (double at = first; at < length - kSameAngle; at += kQuarter) found.push_back(at);
 }
 
-// An arc to the left has what is farther from its centre on the right.
-double outside_of(const PlaneArc& arc, const ArcRunning::Room& room) {
-  return arc.sweep > 0 ? room.right : room.left;
-}
-
-double inside_of(const PlaneArc& arc, const ArcRunning::Room& room) {
-  return arc.sweep > 0 ? room.left : room.right;
-}
-
 }  // namespace
+
+// An arc to the left has what is farther from its centre on the right.
+ArcRunning::Run ArcRunning::run_of(const PlaneArc& arc, double length, double from,
+                                   double to) const {
+  const Room there = room(from, to);
+  Run run{error(arc.radius, std::abs(arc.sweep), length), there.right, there.left, there.error};
+  if (arc.sweep < 0) std::swap(run.outside, run.inside);
+  return run;
+}
+
+ArcSides ArcRunning::Run::sides_within(double most) const {
+  if (error.off > most_error) return {-1, -1};
+  return {std::min(most, outside - error.off),
+          std::min(most, inside - (error.certain ? 0 : error.off))};
+}
+
+double ArcRunning::Run::good_part(double off) const {
+  constexpr double kShorter = 1e-3;  // than what is good by a hair
+  const double good = std::min(most_error, std::max(outside - off, outside / 2));
+  if (error.off <= good) return 1;
+  return good > 0 ? (1 - kShorter) * std::sqrt(good / error.off) : 0;
+}
 
 ArcSides ArcRunning::sides_of(const PlaneArc& arc, double length, double most, double from,
                               double to) const {
   if (!error || arc.is_line()) return {most, most};
-  const Error run = error(arc.radius, std::abs(arc.sweep), length);
-  const Room there = room(from, to);
-  if (run.off > there.error) return {-1, -1};
-  return {std::min(most, outside_of(arc, there) - run.off),
-          std::min(most, inside_of(arc, there) - (run.certain ? 0 : run.off))};
-}
-
-double ArcRunning::good_part_of(const PlaneArc& arc, double outside, double from, double to) const {
-  if (!error || arc.is_line()) return 1;
-  constexpr double kShorter = 1e-3;  // than what is good by a hair
-  const double run_off = error(arc.radius, std::abs(arc.sweep), arc.length()).off;
-  const Room there = room(from, to);
-  const double whole = outside_of(arc, there);
-  const double good = std::min(there.error, std::max(whole - outside, whole / 2));
-  if (run_off <= good) return 1;
-  return good > 0 ? (1 - kShorter) * std::sqrt(good / run_off) : 0;
+  return run_of(arc, length, from, to).sides_within(most);
 }
 
 std::vector<Arc> arc_parts(const Arc& arc, const ArcPartsOptions& options) {

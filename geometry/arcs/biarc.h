@@ -58,9 +58,21 @@ struct ArcRunning {
   // all. A helix is longer than in the plane.
   [[nodiscard]] ArcSides sides_of(const PlaneArc& arc, double length, double most, double from,
                                   double to) const;
-  // The part of an arc that is off by so much outside and may stand there, where the whole may not.
-  [[nodiscard]] double good_part_of(const PlaneArc& arc, double outside, double from,
-                                    double to) const;
+
+  // How one arc is run.
+  struct Run {
+    Error error;
+    double outside;  // mm: of the room, on either side of the arc
+    double inside;
+    double most_error;
+
+    [[nodiscard]] ArcSides sides_within(double most) const;
+    // The part of the arc that is off by so much outside and may stand there, where the whole may
+    // not.
+    [[nodiscard]] double good_part(double off) const;
+  };
+  // Requires an arc that is no line, and an error.
+  [[nodiscard]] Run run_of(const PlaneArc& arc, double length, double from, double to) const;
 };
 
 // Which arcs may be made, and where they may end.
@@ -76,6 +88,9 @@ struct ArcRange {
   double outside = std::numeric_limits<double>::infinity();
   ArcRunning running;
 };
+
+// Radians, signed, positive to the left. Quick where it is small.
+[[nodiscard]] double turn_between(const Vector2& from, const Vector2& to);
 
 // The arc between two points that turns by `sweep`; a line when it is flatter than
 // `max_radius`.

@@ -26,11 +26,12 @@ class ClosingFan {
         along_(entry.along),
         inside_(kBand.fan_part * limits.tolerance),
         outside_(kBand.fan_part * std::min(limits.outside, limits.tolerance)),
+        same_sides_(inside_ == outside_),
         range_{-limits.max_curvature, limits.max_curvature},
         steepest_(steepest) {}
 
   // False when no arc passes this place as well; the range stays as it was.
-  bool narrow(const Point2& sample) {
+  [[gnu::always_inline]] bool narrow(const Point2& sample) {
     const Vector2 way = sample - place_;
     const double x = way.dot(along_);
     const double y = cross(along_, way);
@@ -38,9 +39,10 @@ class ClosingFan {
     const double beyond = square - inside_ * inside_;
     if (beyond <= 0) return true;  // the start itself is near enough
     if (x <= 0 || std::abs(y) > steepest_ * x) return false;
-    const double per_outside = 2 / (square - outside_ * outside_);
-    const double low = std::max(range_.low, -greatest(-y, square, per_outside));
-    const double high = std::min(range_.high, greatest(y, square, per_outside));
+    const double per_inside = 2 / beyond;
+    const double per_outside = same_sides_ ? per_inside : 2 / (square - outside_ * outside_);
+    const double low = std::max(range_.low, -greatest(-y, per_inside, per_outside));
+    const double high = std::min(range_.high, greatest(y, per_inside, per_outside));
     if (low > high) return false;
     range_ = {low, high};
     squared_ = beyond;
@@ -52,30 +54,24 @@ class ClosingFan {
 
  private:
   // Curvature of an arc that passes a place so far to its left.
-  [[nodiscard]] double greatest(double y, double square, double per_outside) const {
+  [[nodiscard]] double greatest(double y, double per_inside, double per_outside) const {
+    if (same_sides_) return per_inside * (y + inside_);
     if (y + outside_ >= 0) return per_outside * (y + outside_);
-    if (y + inside_ >= 0) return 0;
-    return 2 / (square - inside_ * inside_) * (y + inside_);
+    return per_inside * std::min(0.0, y + inside_);
   }
 
   Point2 place_;
   Vector2 along_;
   double inside_;   // mm
   double outside_;  // mm
+  bool same_sides_;
   CurvatureRange range_;
   double steepest_;
   double squared_ = 0;
 };
 
-// Radians, for |tangent| <= kSmallTangent: what the series leaves out is below rounding.
-constexpr double kSmallTangent = 0.125;
-
-double small_angle(double tangent) {
-  const double t = tangent * tangent;
-  const double tail = 1.0 / 11 + t * (-1.0 / 13 + t * (1.0 / 15 - t / 17));
-  const double sum = -1.0 / 3 + t * (1.0 / 5 + t * (-1.0 / 7 + t * (1.0 / 9 - t * tail)));
-  return tangent * (1 + t * sum);
-}
+// Radians from the ray before it: no turn is lost.
+constexpr double kNearRay = 0.125;
 
 // Length along a line or an arc, and distance across it, of places near it.
 class ArcMeter {
@@ -121,25 +117,65 @@ class ArcMeter {
   [[nodiscard]] bool bulges_within(double tolerance, double from, double to,
                                    const PlaneBand::Sample& sample) const {
     if (arc_.is_line()) return true;
-    const double height = cross(sample.edge_way, arc_.center - sample.place) - turn_ * radius_;
-    if (std::abs(height) <= tolerance) return true;
-    double at = wrapped(turn_ * (sample.edge_angle - arc_.start_angle()));
+    if (std::abs(height_over(sample)) <= tolerance) return true;
+    double at = wrapped(turn_ * (heading_of(sample.edge_way) - arc_.start_angle()));
     if (at < 0) at += 2 * kPi;
     return at * radius_ < from || at * radius_ > to;
   }
 
   [[nodiscard]] double length() const { return length_; }
 
+  // Where a sample is as soon as everything before it is plain: each sample within the sides, ahead
+  // of the one before it and before the arc's end, and nowhere a bulge. Then whatever is matched
+  // with them, no sample is refused, and no root or quotient is needed to see it.
+  [[nodiscard]] std::size_t first_not_plain(std::span<const PlaneBand::Sample> samples,
+                                            std::size_t next, const ArcSides& sides) const {
+    if (arc_.is_line() || sides.inside >= radius_ || std::abs(arc_.sweep) >= kPi) return next;
+    const double nearest = (radius_ - sides.inside) * (radius_ - sides.inside);
+    const double farthest = (radius_ + sides.outside) * (radius_ + sides.outside);
+    const Vector2 last = arc_.end - arc_.center;
+    Vector2 before = first_;
+    std::size_t i = next;
+    for (; i < samples.size(); ++i) {
+      const Vector2 way = samples[i].place - arc_.center;
+      const double square = way.squaredNorm();
+      const bool ahead = turn_ * cross(before, way) >= 0 && turn_ * cross(way, last) > 0;
+      if (!ahead || square < nearest || square > farthest) break;
+      if (std::abs(height_over(samples[i])) > sides.inside) break;
+      before = way;
+    }
+    return i;
+  }
+
+  // True when the place is not within the sides of the circle; of a line nothing is said.
+  [[nodiscard]] bool is_off(const Point2& place, const ArcSides& sides) const {
+    if (arc_.is_line()) return false;
+    const double distance = (place - arc_.center).norm();
+    return distance < radius_ - sides.inside || distance > radius_ + sides.outside;
+  }
+
+  // True when the arc certainly ends before the place, and does not bulge from the edge there.
+  [[nodiscard]] bool ends_plainly(const PlaneBand::Sample& sample, double tolerance) const {
+    const Vector2 way = sample.place - arc_.center;
+    const Vector2 last = arc_.end - arc_.center;
+    return turn_ * cross(last, way) > kSamePlace * way.norm() && last.dot(way) > 0 &&
+           std::abs(height_over(sample)) <= tolerance;
+  }
+
  private:
+  // Of the place where the arc's circle is parallel to the sample's edge, mm to the right of it.
+  [[nodiscard]] double height_over(const PlaneBand::Sample& sample) const {
+    return cross(sample.edge_way, arc_.center - sample.place) - turn_ * radius_;
+  }
+
   // How far the arc has turned where it passes this ray from its centre: from the ray before it
-  // where that is near, for an arctangent costs more than all the rest.
+  // where that is near.
   double angle_to(const Vector2& way) {
-    const double across = cross(before_, way);
-    const double ahead = before_.dot(way);
-    if (std::abs(across) <= kSmallTangent * ahead && ahead > 0) {
-      angle_ += turn_ * small_angle(across / ahead);
+    const double more = turn_between(before_, way);
+    if (std::abs(more) < kNearRay) {
+      angle_ += turn_ * more;
     } else {
-      angle_ = turn_ * std::atan2(cross(first_, way), first_.dot(way));
+      angle_ = turn_ * turn_between(first_, way);
       if (angle_ < -(kPi - std::abs(arc_.sweep) / 2)) angle_ += 2 * kPi;
     }
     before_ = way;
@@ -160,23 +196,23 @@ class ArcMeter {
 PlaneBand::PlaneBand(std::span<const Point2> points, const Limits& limits)
     : limits_(limits), steepest_(std::tan(limits.max_sweep / 2)) {
   const std::size_t n = points.size();
-  std::vector<double> angles(n - 1);
-  for (std::size_t i = 0; i + 1 < n; ++i) angles[i] = heading_of(points[i + 1] - points[i]);
   samples_.reserve(2 * n);
-  samples_.push_back({points[0], 0, angles[0], 0, unit_vector(angles[0])});
+  Vector2 way = (points[1] - points[0]).normalized();
+  samples_.push_back({points[0], 0, 0, way});
   double turn_before = 0;
   for (std::size_t i = 0; i + 1 < n; ++i) {
-    const double turn_after = i + 2 < n ? wrapped(angles[i + 1] - angles[i]) : 0;
-    add_edge(points[i], points[i + 1], angles[i], turn_before, turn_after);
+    const Vector2 after = i + 2 < n ? (points[i + 2] - points[i + 1]).normalized() : way;
+    const double turn_after = turn_between(way, after);
+    add_edge(points[i], points[i + 1], way, turn_before, turn_after);
     turn_before = turn_after;
+    way = after;
   }
 }
 
-void PlaneBand::add_edge(const Point2& from, const Point2& to, double angle, double turn_before,
-                         double turn_after) {
+void PlaneBand::add_edge(const Point2& from, const Point2& to, const Vector2& edge_way,
+                         double turn_before, double turn_after) {
   const Vector2 way = to - from;
   const double length = way.norm();
-  const Vector2 edge_way = unit_vector(angle);
   std::vector<double> inner;  // mm from the edge's start
   const double nearest = kBand.nearest * limits_.tolerance;
   const auto add_about = [&](double turn, bool at_end) {
@@ -198,10 +234,10 @@ void PlaneBand::add_edge(const Point2& from, const Point2& to, double angle, dou
   double last = 0;
   for (const double at : inner) {
     if (at - last < nearest / 2) continue;
-    samples_.push_back({from + (at / length) * way, start + at, angle, 0, edge_way});
+    samples_.push_back({from + (at / length) * way, start + at, 0, edge_way});
     last = at;
   }
-  samples_.push_back({to, start + length, angle, turn_after, edge_way});
+  samples_.push_back({to, start + length, turn_after, edge_way});
 }
 
 ArcFan PlaneBand::fan(const BandEntry& entry) const {
@@ -224,13 +260,39 @@ ArcReach PlaneBand::reach(const BandEntry& entry) const {
   return {i, closing.width()};
 }
 
+bool PlaneBand::may_reach(const BandEntry& entry, std::size_t end) const {
+  const std::size_t strides = end > entry.next ? (end - entry.next) / limits_.stride : 0;
+  if (strides == 0) return true;
+  count_operations(1);
+  ClosingFan closing(entry, limits_, steepest_);
+  // The farthest one leaves the fewest arcs; most others are closed out half of the way.
+  for (const std::size_t quarters : {4, 2, 3, 1}) {
+    const std::size_t passed = std::max<std::size_t>(strides * quarters / 4, 1);
+    if (!closing.narrow(samples_[entry.next + passed * limits_.stride - 1].place)) return false;
+  }
+  return true;
+}
+
 std::optional<std::size_t> PlaneBand::passed(const BandEntry& entry, const PlaneArc& arc,
                                              const ArcSides& sides) const {
   if (!sides.any()) return std::nullopt;
   ArcMeter meter(arc);
+  const auto meets_last = [&]() -> std::optional<std::size_t> {
+    if ((arc.end - samples_.back().place).norm() > sides.inside) return std::nullopt;
+    return samples_.size();
+  };
+  const auto ends_beside_edge_to = [&](std::size_t next) {
+    return distance_to_segment(arc.end, samples_[next - 1].place, samples_[next].place) <=
+           sides.inside;
+  };
+  std::size_t i = meter.first_not_plain(samples_, entry.next, sides);
+  if (i == samples_.size()) return meets_last();
+  if (meter.ends_plainly(samples_[i], sides.inside)) {
+    return ends_beside_edge_to(i) ? std::optional(i) : std::nullopt;
+  }
+  if (meter.is_off(samples_[i].place, sides) && !ends_beside_edge_to(i)) return std::nullopt;
   double at = 0;  // everything before is matched
-  std::size_t i = entry.next;
-  for (; i < samples_.size(); ++i) {
+  for (i = entry.next; i < samples_.size(); ++i) {
     const Sample& sample = samples_[i];
     const ArcMeter::Foot foot = meter.foot(sample.place, sides);
     if (foot.along > meter.length() + kSamePlace) break;
@@ -240,13 +302,9 @@ std::optional<std::size_t> PlaneBand::passed(const BandEntry& entry, const Plane
     if (!meter.bulges_within(sides.inside, at, to, sample)) return std::nullopt;
     at = to;
   }
-  if (i == samples_.size()) {
-    const bool meets = (arc.end - samples_.back().place).norm() <= sides.inside;
-    return meets ? std::optional(i) : std::nullopt;
-  }
-  const Sample& next = samples_[i];
-  if (distance_to_segment(arc.end, samples_[i - 1].place, next.place) > sides.inside ||
-      !meter.bulges_within(sides.inside, at, meter.length(), next)) {
+  if (i == samples_.size()) return meets_last();
+  if (!ends_beside_edge_to(i) ||
+      !meter.bulges_within(sides.inside, at, meter.length(), samples_[i])) {
     return std::nullopt;
   }
   return i;

@@ -58,10 +58,9 @@ class PlaneBand {
   // more that what an arc does between two of them is little against the tolerance.
   struct Sample {
     Point2 place;
-    double station;     // length along the polyline, mm
-    double edge_angle;  // direction of the edge that ends here or passes here, radians
-    double turn;        // radians, signed, at a vertex; 0 between vertices
-    Vector2 edge_way;   // the unit vector of that direction
+    double station;    // length along the polyline, mm
+    double turn;       // radians, signed, at a vertex; 0 between vertices
+    Vector2 edge_way;  // unit vector: direction of the edge that ends here or passes here
   };
 
   struct Limits {
@@ -81,6 +80,9 @@ class PlaneBand {
   // The end of that fan; with a stride narrow places between the samples may be overlooked.
   [[nodiscard]] ArcReach reach(const BandEntry& entry) const;
 
+  // False when it is certain that `reach` ends before this: a few of its samples say so.
+  [[nodiscard]] bool may_reach(const BandEntry& entry, std::size_t end) const;
+
   // Whether the arc (or line) from `entry` stays within `sides` (no more than the tolerance of the
   // band; a line: `inside`) of the polyline, and the polyline of it, both going forward (Frechet
   // distance). Returns the first sample that lies beyond the arc's end; samples().size() when it
@@ -89,7 +91,7 @@ class PlaneBand {
                                                   const ArcSides& sides) const;
 
  private:
-  void add_edge(const Point2& from, const Point2& to, double angle, double turn_before,
+  void add_edge(const Point2& from, const Point2& to, const Vector2& edge_way, double turn_before,
                 double turn_after);
 
   Limits limits_;

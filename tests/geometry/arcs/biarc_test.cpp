@@ -14,6 +14,13 @@ constexpr double kNoLimit = 1e9;
 
 double angle_error(double a, double b) { return std::abs(std::remainder(a - b, 2 * pi)); }
 
+TEST(TurnBetween, IsTheAngleWhetherSmallOrNot) {
+  for (const double angle : {0.0, 1e-9, -1e-4, 0.01, -0.1, 0.124, 0.126, -1.0, 1.6, -3.0}) {
+    EXPECT_NEAR(turn_between(2 * unit_vector(0.7), 3 * unit_vector(0.7 + angle)), angle, 1e-15)
+        << angle;
+  }
+}
+
 TEST(PlaneArc, TurnsLeftForPositiveSweep) {
   const PlaneArc arc = arc_with_sweep({1, 0}, {0, 1}, pi / 2, kNoLimit);
   EXPECT_NEAR(arc.center.norm(), 0, 1e-15);

@@ -85,8 +85,9 @@ TEST(PlaneBand, ReachIsTheEndOfTheFan) {
   const auto& samples = band.samples();
   for (std::size_t next = 1; next + 1 < samples.size(); next += 7) {
     for (const double off : {0.0, 0.004, -0.004}) {
-      const BandEntry entry{samples[next - 1].place, unit_vector(samples[next].edge_angle + off),
-                            next};
+      const Vector2& way = samples[next].edge_way;
+      const double angle = std::atan2(way.y(), way.x()) + off;
+      const BandEntry entry{samples[next - 1].place, unit_vector(angle), next};
       const std::size_t end = next + band.fan(entry).size();
       const std::size_t reach = band.reach(entry).end;
       EXPECT_GE(reach, end);
@@ -94,6 +95,26 @@ TEST(PlaneBand, ReachIsTheEndOfTheFan) {
       EXPECT_EQ(exact.reach(entry).end, end);
     }
   }
+}
+
+TEST(PlaneBand, MayReachWhateverItReaches) {
+  std::vector<Point2> points;
+  for (int i = 0; i <= 2000; ++i) {
+    const double x = 0.05 * i;
+    points.push_back({x, 3 * std::sin(0.4 * x) + 0.5 * std::sin(1.7 * x)});
+  }
+  const PlaneBand band(points, limits());
+  const auto& samples = band.samples();
+  int told = 0;
+  for (std::size_t next = 1; next + 1 < samples.size(); next += 7) {
+    const BandEntry entry{samples[next - 1].place, samples[next].edge_way, next};
+    const std::size_t end = band.reach(entry).end;
+    EXPECT_TRUE(band.may_reach(entry, end));
+    EXPECT_TRUE(band.may_reach(entry, next));
+    const std::size_t far = std::min(samples.size(), end + (end - next) / 4 + 2);
+    if (far > end && !band.may_reach(entry, far)) ++told;
+  }
+  EXPECT_GT(told, 250);  // of 285
 }
 
 TEST(PlaneBand, AnArcWithinTheToleranceIsPassed) {
@@ -104,6 +125,21 @@ TEST(PlaneBand, AnArcWithinTheToleranceIsPassed) {
     const BandEntry entry{{radius, 0}, {0, 1}, 1};
     EXPECT_EQ(band.passed(entry, arc_about_origin(radius, 2.5), kSides), band.samples().size())
         << off;
+  }
+}
+
+TEST(PlaneBand, AnArcThatGoesOnAtASampleIsPassedToTheNextOne) {
+  const auto points = on_circle(20, 200, 2.5);
+  const PlaneBand band(points, limits());
+  const auto& samples = band.samples();
+  const BandEntry entry{{20, 0}, {0, 1}, 1};
+  for (std::size_t i = 40; i + 1 < samples.size(); i += 30) {
+    const Point2& place = samples[i].place;
+    const double at = std::atan2(place.y(), place.x());
+    // Just before the sample it ends before it; at the sample and just after it, after it.
+    EXPECT_EQ(band.passed(entry, arc_about_origin(20, at - 1e-6), kSides), i);
+    EXPECT_EQ(band.passed(entry, arc_about_origin(20, at), kSides), i + 1);
+    EXPECT_EQ(band.passed(entry, arc_about_origin(20, at + 1e-6), kSides), i + 1);
   }
 }
 
