@@ -287,15 +287,21 @@ class PartSmoother {
     return runs;
   }
 
+  // Whether no form but its own vertices will do, and these are not half as far off.
+  static bool has_little(const RunState& work) {
+    const Candidate* chosen = work.chosen();
+    return chosen != nullptr && chosen->has_vertices &&
+           chosen->figures.distance >
+               kCost.half_as_far * work.smoothed.facts.scale.original.distance;
+  }
+
   // Whether something speaks against forms of the run as a whole that may be true of a part of it
   // only.
   static bool disappoints(const RunState& work) {
     const std::string_view kept = work.selection.reason;
-    const Candidate* chosen = work.chosen();
-    return (chosen != nullptr && chosen->has_vertices) || is_rejected_by_proof(work) ||
-           kept == gcode::reason::kNoGain || kept == gcode::reason::kSlower ||
-           kept == gcode::reason::kLarger || kept == gcode::reason::kFarther ||
-           kept == gcode::reason::kNoFit;
+    return has_little(work) || is_rejected_by_proof(work) || kept == gcode::reason::kNoGain ||
+           kept == gcode::reason::kSlower || kept == gcode::reason::kLarger ||
+           kept == gcode::reason::kFarther || kept == gcode::reason::kNoFit;
   }
 
   // Returns the works that are new.
@@ -330,7 +336,8 @@ class PartSmoother {
     CutRun cut;
     cut.path = work.context.after.path;
     cut.facts = work.smoothed.facts;
-    cut.reason = work.reject_reason.empty() ? work.selection.reason : work.reject_reason;
+    const Selection forms = choose(work.smoothed, options_, Among::kFormsAlone);
+    cut.reason = work.reject_reason.empty() ? forms.reason : work.reject_reason;
     cut.outlook = std::move(work.outlook);
     cut.first_work = works.size();
     cut.pieces = pieces.size();

@@ -119,7 +119,7 @@ TEST(ChordVertices, RefuseADeviationOfZero) {
   EXPECT_THROW((void)chord_vertices(stadium(), 0, 10, ChordOptions{0}), std::invalid_argument);
 }
 
-// Signed distances of a flat curve y(x) from chords, upwards, at even steps.
+// Signed distances of a flat curve y(x) from chords, upwards, by their lengths.
 struct Offsets {
   double mean = 0;
   double rms = 0;
@@ -128,22 +128,23 @@ struct Offsets {
 
 Offsets offsets_of(const Parabola& parabola, const std::vector<LinkVertex>& vertices) {
   Offsets found;
-  int count = 0;
+  double length = 0;
   // The first and the last chord have an end that stays.
   for (std::size_t i = 2; i + 1 < vertices.size(); ++i) {
     const Point3& a = vertices[i - 1].place;
     const Point3& b = vertices[i].place;
+    const double part = (b - a).norm() / 500;
     for (int k = 0; k < 500; ++k) {
       const Point3 p = a + (k + 0.5) / 500 * (b - a);
       const double off = (p.y() - parabola.y(p.x())) / std::hypot(1, parabola.slope(p.x()));
-      found.mean += off;
-      found.rms += off * off;
+      found.mean += part * off;
+      found.rms += part * off * off;
       found.greatest = std::max(found.greatest, std::abs(off));
-      ++count;
+      length += part;
     }
   }
-  found.mean /= count;
-  found.rms = std::sqrt(found.rms / count);
+  found.mean /= length;
+  found.rms = std::sqrt(found.rms / length);
   return found;
 }
 
@@ -161,18 +162,46 @@ TEST(BalancedChords, LieAsMuchOutsideAsInside) {
   EXPECT_NEAR(balanced.greatest / plain.greatest, 2.0 / 3, 0.02);
 }
 
+// Long chords next to short ones, which balanced ones take for alike.
+TEST(NearestChords, AreNearestInTheMeanSquare) {
+  const BsplineCurve curve = kFlatParabola.curve();
+  std::vector<double> x = {2};
+  for (int i = 0; x.back() < 10.5; ++i) x.push_back(x.back() + (i % 3 == 0 ? 0.6 : 0.2));
+  const std::vector<LinkVertex> nearest = nearest_chords(curve, x);
+  const double rms = offsets_of(kFlatParabola, nearest).rms;
+  EXPECT_LT(rms, 0.9 * offsets_of(kFlatParabola, balanced_chords(curve, x)).rms);
+  for (std::size_t i = 3; i + 3 < nearest.size(); ++i) {
+    for (const double off : {-2e-4, 2e-4}) {
+      std::vector<LinkVertex> other = nearest;
+      other[i].place.y() += off;
+      EXPECT_GT(offsets_of(kFlatParabola, other).rms, rms) << "vertex " << i;
+    }
+  }
+}
+
+TEST(NearestChords, OfEvenOnesAreBalanced) {
+  const BsplineCurve curve = kFlatParabola.curve();
+  std::vector<double> x;
+  for (int i = 0; i <= 40; ++i) x.push_back(2 + 0.2 * i);
+  const std::vector<LinkVertex> nearest = nearest_chords(curve, x);
+  const std::vector<LinkVertex> balanced = balanced_chords(curve, x);
+  const double height = (balanced[20].place - curve.point_at(x[20])).norm();
+  EXPECT_LT((nearest[20].place - balanced[20].place).norm(), 0.01 * height);
+}
+
 TEST(BalancedChords, EndsAndCornersStayOnTheCurve) {
   // A corner at u = 1 between two bends.
   const BsplineBasis basis(3, {0, 0, 0, 0, 1, 1, 1, 2, 2, 2, 2});
   const BsplineCurve curve(
       basis, {{0, 0, 0}, {1, 1, 0}, {2, 1, 0}, {3, 0, 0}, {4, 1, 0}, {5, 1, 0}, {6, 0, 0}});
   const std::vector<double> u = {0, 0.4, 1, 1.6, 2};
-  const auto vertices = balanced_chords(curve, u);
-  ASSERT_EQ(vertices.size(), u.size());
-  for (const std::size_t i : {0u, 2u, 4u}) EXPECT_EQ(vertices[i].place, curve.point_at(u[i]));
-  for (const std::size_t i : {1u, 3u}) {
-    EXPECT_GT(vertices[i].place.y(), curve.point_at(u[i]).y()) << "outwards";
-    EXPECT_EQ(vertices[i].parameter, u[i]);
+  for (const auto& vertices : {balanced_chords(curve, u), nearest_chords(curve, u)}) {
+    ASSERT_EQ(vertices.size(), u.size());
+    for (const std::size_t i : {0u, 2u, 4u}) EXPECT_EQ(vertices[i].place, curve.point_at(u[i]));
+    for (const std::size_t i : {1u, 3u}) {
+      EXPECT_GT(vertices[i].place.y(), curve.point_at(u[i]).y()) << "outwards";
+      EXPECT_EQ(vertices[i].parameter, u[i]);
+    }
   }
 }
 

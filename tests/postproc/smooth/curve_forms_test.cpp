@@ -49,6 +49,48 @@ TEST(CurveForms, AreMadeOnce) {
   }
 }
 
+// A wave in chords that are as high as the tolerance, or a quarter higher: no form in fewer blocks
+// is within it, but the vertices can be moved outwards by two thirds of a chord's height.
+std::string coarse_wave(double chord_height) {
+  std::string text = "G21 G90 G17 G64\nG0 X0 Y0\nF1200\n";
+  double x = 0;
+  while (x < 40) {
+    const double bend = std::abs(0.25 * std::sin(x / 2)) + 0.02;  // about, 1/mm
+    x += std::sqrt(8 * chord_height / bend);
+    text += fmt::format("G1 X{:.3f} Y{:.3f}\n", x, std::sin(x / 2));
+  }
+  return text;
+}
+
+TEST(CurveForms, OfCoarseChordsAreTheirVerticesMoved) {
+  for (const double height : {0.008, 0.0125}) {
+    SCOPED_TRACE(height);
+    const SmoothOptions options = options_for("grbl");
+    const OneRun run(coarse_wave(height));
+    const SmoothedRun made = run.smooth(options, CandidateScope::kToChoose);
+    const Selection selection = choose(made, options);
+    ASSERT_FALSE(selection.order.empty()) << selection.reason;
+    const Candidate& chosen = made.candidates[selection.order.front()];
+    EXPECT_TRUE(chosen.has_vertices);
+    EXPECT_EQ(chosen.figures.blocks, made.facts.scale.original.blocks);
+    EXPECT_LE(chosen.figures.distance, 0.7 * made.facts.scale.original.distance);
+    const SmoothResult result = smoothed(coarse_wave(height), options);
+    EXPECT_TRUE(result.proved);
+    EXPECT_LE(result.deviation_mm, 0.01);
+    EXPECT_EQ(smoothed(result.text, options).text, result.text);
+  }
+}
+
+// They are what is left to do where no form is better than the run.
+TEST(CurveForms, HaveVerticesMovedWhereNothingElseWillDo) {
+  const OneRun run(wave_program({.noise = 0.001}));
+  for (const char* target : {"grbl", "linuxcnc"}) {
+    const SmoothedRun all = run.smooth(options_for(target));
+    EXPECT_FALSE(choose(all, options_for(target), Among::kFormsAlone).order.empty());
+    EXPECT_TRUE(std::ranges::none_of(all.candidates, &Candidate::has_vertices));
+  }
+}
+
 // A wing section (NACA 2412) of 80 mm, its vertices rounded to 0.001 mm.
 std::string wing_program(int count) {
   const auto half = [](double x, double side) {
