@@ -28,12 +28,6 @@ double bounded_weight(double weight, double stiffness) {
   return std::clamp(weight, kFitTuning.weight_floor * stiffness, kFitTuning.weight_cap * stiffness);
 }
 
-void compare_with_scatter(const FitSample& sample, SampleState& state) {
-  if (!(sample.scatter > 0)) return;
-  const double ratio = state.distance / sample.scatter;
-  state.scattered = ratio * ratio;
-}
-
 // Slides the target to the foot of the curve and measures what is left.
 void measure(const FitSample& sample, std::span<const Point3> points, SampleState& state) {
   const Vector3 off = state.row.on(points) - sample.target;
@@ -41,7 +35,6 @@ void measure(const FitSample& sample, std::span<const Point3> points, SampleStat
   const Vector3 slide = std::clamp(off.dot(sample.along), -room, room) * sample.along;
   state.target = sample.target + (1 - kFitTuning.slide_pull) * slide;
   state.distance = (off - slide).norm();
-  compare_with_scatter(sample, state);
 }
 
 // The discrepancy principle, locally: the base weights of these samples fall, by `least` at the
@@ -50,16 +43,21 @@ void measure(const FitSample& sample, std::span<const Point3> points, SampleStat
 void reweight_scatter(std::span<const FitSample> samples, std::span<SampleState> states,
                       IndexRange range, double least) {
   constexpr std::size_t kWindow = kFitTuning.scatter_window;
-  double sum = 0;  // of `scattered`, of those in [first, last[
+  // Of the squared distance over scatter; none where no scatter is expected.
+  const auto square_at = [&](std::size_t i) {
+    const double ratio = states[i].distance / samples[i].scatter;
+    return ratio * ratio;
+  };
+  double sum = 0;  // of those in [first, last[
   int count = 0;
   std::size_t first = range.begin < kWindow ? 0 : range.begin - kWindow;
   std::size_t last = first;
   for (std::size_t i = range.begin; i < range.end; ++i) {
     for (; last < samples.size() && last <= i + kWindow; ++last) {
-      if (samples[last].scatter > 0) sum += states[last].scattered, ++count;
+      if (samples[last].scatter > 0) sum += square_at(last), ++count;
     }
     for (; first + kWindow < i; ++first) {
-      if (samples[first].scatter > 0) sum -= states[first].scattered, --count;
+      if (samples[first].scatter > 0) sum -= square_at(first), --count;
     }
     if (!(samples[i].scatter > 0) || count == 0) continue;
     const double rms = std::sqrt(std::max(sum, 0.0) / count);
@@ -101,7 +99,8 @@ SpanNeed need_of(std::span<const FitSample> samples, std::span<const SampleState
   for (std::size_t i = 0; i < samples.size(); ++i) {
     worst = std::max(worst, states[i].distance / samples[i].limit);
     if (!(samples[i].scatter > 0)) continue;
-    squares += states[i].scattered;
+    const double ratio = states[i].distance / samples[i].scatter;
+    squares += ratio * ratio;
     ++count;
   }
   const double scattered = kFitTuning.too_scattered * kFitTuning.too_scattered * count;
@@ -110,63 +109,6 @@ SpanNeed need_of(std::span<const FitSample> samples, std::span<const SampleState
   const bool alike = count == static_cast<double>(samples.size());
   return {worst, worst > kFitTuning.too_far || squares > scattered,
           worst > hopeless || (alike && squares > hopeless * hopeless * scattered)};
-}
-
-// What a problem asks for between two of its borders. `samples` and `breakpoints` are views of
-// those between them, pins and zones are cut there.
-struct ProblemPart {
-  std::span<const FitSample> samples;
-  std::vector<StraightZone> zones;
-  std::vector<Pin> pins;
-  std::span<const double> breakpoints;  // without those at the borders
-};
-
-// Calls `take` with the samples outside the zones, until it says no.
-template <typename Function>
-void each_free_sample(const ProblemPart& part, const Function& take) {
-  std::size_t zone = 0;
-  for (const FitSample& sample : part.samples) {
-    while (zone < part.zones.size() && part.zones[zone].to <= sample.parameter) ++zone;
-    if (zone < part.zones.size() && sample.parameter >= part.zones[zone].from) continue;
-    if (!take(sample)) return;
-  }
-}
-
-std::vector<FitSample> free_samples(const ProblemPart& part) {
-  std::vector<FitSample> samples;
-  samples.reserve(part.samples.size());
-  each_free_sample(part, [&](const FitSample& sample) {
-    samples.push_back(sample);
-    return true;
-  });
-  return samples;
-}
-
-bool same(const FitSample& a, const FitSample& b) {
-  return a.parameter == b.parameter && a.target == b.target && a.along == b.along &&
-         a.limit == b.limit && a.scatter == b.scatter;
-}
-
-// Whether the samples outside the zones are these.
-bool has_samples(const ProblemPart& part, std::span<const FitSample> samples) {
-  std::size_t count = 0;
-  bool all = true;
-  each_free_sample(part, [&](const FitSample& sample) {
-    all = count < samples.size() && same(sample, samples[count]);
-    ++count;
-    return all;
-  });
-  return all && count == samples.size();
-}
-
-// With both borders.
-std::vector<double> breakpoints_of(const ProblemPart& part) {
-  std::vector<double> breaks;
-  breaks.reserve(part.breakpoints.size() + 2);
-  breaks.push_back(part.pins.front().parameter);
-  breaks.insert(breaks.end(), part.breakpoints.begin(), part.breakpoints.end());
-  breaks.push_back(part.pins.back().parameter);
-  return breaks;
 }
 
 bool same(const Pin& a, const Pin& b) { return a.parameter == b.parameter && a.place == b.place; }
@@ -206,6 +148,10 @@ struct SampleChanges {
   std::vector<std::size_t> was;  // per sample: the old one with the same target, or kNew
   std::vector<bool> altered;     // per sample: new, or with another direction, limit or scatter
   std::vector<double> gone;      // parameters of old samples that are no more, increasing
+
+  [[nodiscard]] bool any() const {
+    return !gone.empty() || std::find(altered.begin(), altered.end(), true) != altered.end();
+  }
 };
 
 // Parameters increase in both.
@@ -245,18 +191,18 @@ std::vector<ParameterRange> changed_places(std::span<const Pin> pins_before,
 // The breakpoints `now`, but for the parts that are `rebuilt`: these start again from the
 // breakpoints of `problem`. With every pin and zone of `problem`, which replace breakpoints nearer
 // than `closest`.
-std::vector<double> breaks_of(const ProblemPart& problem, std::span<const double> now,
+std::vector<double> breaks_of(const FitProblem& problem, std::span<const double> now,
                               std::span<const ParameterRange> rebuilt, double closest) {
   std::vector<double> breaks(now.begin(), now.end());
   std::size_t part = 0;
-  for (const double u : breakpoints_of(problem)) {
+  for (const double u : problem.breakpoints) {
     while (part < rebuilt.size() && rebuilt[part].to < u) ++part;
     if (part < rebuilt.size() && rebuilt[part].from <= u) breaks.push_back(u);
   }
   if (breaks.size() > now.size()) std::sort(breaks.begin(), breaks.end());
   breaks.erase(std::unique(breaks.begin(), breaks.end()), breaks.end());
 
-  const std::vector<double> required = required_breaks(problem.pins, problem.zones);
+  const std::vector<double> required = required_breaks(problem);
   std::vector<double> kept;
   kept.reserve(breaks.size() + required.size());
   std::size_t zone = 0;
@@ -300,6 +246,17 @@ std::vector<std::size_t> carry_points(const FitSpline& before, FitSpline& after)
   return now_at;
 }
 
+// The samples outside the zones.
+std::vector<FitSample> free_samples(std::vector<FitSample> samples,
+                                    std::span<const StraightZone> zones) {
+  std::size_t zone = 0;
+  std::erase_if(samples, [&](const FitSample& sample) {
+    while (zone < zones.size() && zones[zone].to <= sample.parameter) ++zone;
+    return zone < zones.size() && sample.parameter >= zones[zone].from;
+  });
+  return samples;
+}
+
 // Samples from `begin` on that share a span.
 std::size_t end_of_span(std::span<const SampleState> states, std::size_t begin) {
   std::size_t end = begin;
@@ -325,25 +282,24 @@ void join(ParameterRange range, std::vector<ParameterRange>& ranges) {
 class AdaptiveFit {
  public:
   // Fits.
-  AdaptiveFit(const ProblemPart& part, int max_refinements)
-      : max_refinements_(max_refinements),
-        samples_(free_samples(part)),
-        zones_(part.zones),
-        pins_(part.pins),
-        states_(samples_.size()) {
+  AdaptiveFit(FitProblem problem, int max_refinements) : max_refinements_(max_refinements) {
+    samples_ = free_samples(std::move(problem.samples), problem.zones);
+    zones_ = std::move(problem.zones);
+    pins_ = std::move(problem.pins);
+    states_.resize(samples_.size());
     for (std::size_t i = 0; i < samples_.size(); ++i) states_[i].target = samples_[i].target;
-    set_breaks(breakpoints_of(part));
+    set_breaks(std::move(problem.breakpoints));
     run();
   }
 
   // Fits another problem on the same interval: the curve stays as it is where the samples, zones
   // and pins are the same, but for what the change moves.
-  void refit(const ProblemPart& part, double closest) {
-    const auto rebuilt = changed_places(pins_, part.pins, zones_, part.zones);
-    for (PointState& point : points_) point.moved = false;
-    if (rebuilt.empty() && has_samples(part, samples_)) return;
-    std::vector<FitSample> samples = free_samples(part);
+  void refit(FitProblem problem, double closest) {
+    std::vector<FitSample> samples = free_samples(std::move(problem.samples), problem.zones);
     const SampleChanges changes = changes_of(samples_, samples);
+    const auto rebuilt = changed_places(pins_, problem.pins, zones_, problem.zones);
+    for (PointState& point : points_) point.moved = false;
+    if (!changes.any() && rebuilt.empty()) return;
     std::vector<SampleState> states(samples.size());
     for (std::size_t i = 0; i < samples.size(); ++i) {
       if (changes.was[i] == kNew) {
@@ -351,18 +307,17 @@ class AdaptiveFit {
       } else {
         states[i] = states_[changes.was[i]];
         states[i].tight = false;
-        compare_with_scatter(samples[i], states[i]);
       }
     }
     samples_ = std::move(samples);
     states_ = std::move(states);
-    zones_ = part.zones;
-    pins_ = part.pins;
+    zones_ = problem.zones;
+    pins_ = problem.pins;
     const bool may_differ = !rebuilt.empty() || has_new_breaks_ || closest != closest_;
     has_new_breaks_ = false;
     closest_ = closest;
     std::vector<double> breaks;
-    if (may_differ) breaks = breaks_of(part, spline_.breaks, rebuilt, closest);
+    if (may_differ) breaks = breaks_of(problem, spline_.breaks, rebuilt, closest);
     if (!may_differ || (rebuilt.empty() && breaks == spline_.breaks)) {
       std::vector<std::size_t> as_before(spline_.size());
       std::iota(as_before.begin(), as_before.end(), std::size_t{0});
@@ -612,24 +567,32 @@ class AdaptiveFit {
       point.moved = true;
       spline_.points[i] = place;
     }
-    if (!solved) {
-      for (std::size_t i = samples.begin; i < samples.end; ++i) {
-        measure(samples_[i], spline_.points, states_[i]);
+    for (std::size_t i = samples.begin; i < samples.end; ++i) {
+      measure(samples_[i], spline_.points, states_[i]);
+      if (!solved || states_[i].distance <= samples_[i].limit) continue;
+      for (std::size_t j = 0; j < 4; ++j) {
+        int& left = points_[states_[i].row.first + j].left;
+        left = std::max(left, 1);
       }
-      return;
     }
+    if (solved) reweight(samples, phase);
+  }
+
+  void reweight(IndexRange samples, Phase phase) {
     const double part = phase == Phase::kClose ? 1 : kFitTuning.press;
     bool inverted = false;
     for (std::size_t i = samples.begin; i < samples.end; ++i) {
-      const FitSample& sample = samples_[i];
       SampleState& state = states_[i];
-      measure(sample, spline_.points, state);
-      if (sample.scatter == 0) fade(phase, sample, state);
-      const double ratio = state.distance / sample.limit;
-      if (ratio > kFitTuning.aim_inside) {
+      const double ratio = state.distance / samples_[i].limit;
+      const bool inside = ratio <= kFitTuning.aim_inside;
+      const bool fades = phase == Phase::kRelax || (phase == Phase::kDecide && inside);
+      // A sample without scatter is held by its limit alone in the end.
+      if (fades && !(samples_[i].scatter > 0)) {
+        state.base = bounded_weight(kFitTuning.let_go * state.base, state.stiffness);
+      }
+      if (!inside) {
         if (!std::exchange(inverted, true)) system_.invert(spline_, state.row.first);
         press_limit(ratio, system_.leverage(state.row), part, state);
-        if (ratio > 1) keep_awake(state.row.first);
       } else if (phase != Phase::kClose) {
         // Where a limit leaves room its weight falls by the ratio of distance and limit (C. L.
         // Lawson's reweighting), so that it vanishes where the limit is not felt.
@@ -639,21 +602,6 @@ class AdaptiveFit {
     }
     if (phase == Phase::kClose) return;
     reweight_scatter(samples_, states_, samples, phase == Phase::kRelax ? kFitTuning.fall : 1);
-  }
-
-  // A sample without scatter is held by its limit alone in the end.
-  static void fade(Phase phase, const FitSample& sample, SampleState& state) {
-    const bool inside = state.distance <= kFitTuning.aim_inside * sample.limit;
-    if (phase == Phase::kClose || (phase == Phase::kDecide && !inside)) return;
-    state.base = bounded_weight(kFitTuning.let_go * state.base, state.stiffness);
-  }
-
-  // The control points of a span that start with this one, for one more solution.
-  void keep_awake(std::size_t first_point) {
-    for (std::size_t j = 0; j < 4; ++j) {
-      int& left = points_[first_point + j].left;
-      left = std::max(left, 1);
-    }
   }
 
   // The control points of a span that start with this one.
@@ -756,16 +704,16 @@ class SplineCutter {
  public:
   explicit SplineCutter(const FitProblem& problem) : whole_(problem) {}
 
-  ProblemPart cut(const Pin& from, const Pin& to) {
-    ProblemPart part;
+  FitProblem cut(const Pin& from, const Pin& to) {
+    FitProblem part;
     const auto by_itself = [](double u) { return u; };
-    part.samples = take(whole_.samples, &FitSample::parameter, from, to, sample_);
-    part.breakpoints = take(whole_.breakpoints, by_itself, from, to, break_);
-    const std::span<const Pin> inner = take(whole_.pins, &Pin::parameter, from, to, pin_);
-    part.pins.reserve(inner.size() + 2);
-    part.pins.push_back(from);
-    part.pins.insert(part.pins.end(), inner.begin(), inner.end());
+    part.pins = {from};
+    part.breakpoints = {from.parameter};
+    take(whole_.samples, &FitSample::parameter, from, to, sample_, part.samples);
+    take(whole_.pins, &Pin::parameter, from, to, pin_, part.pins);
+    take(whole_.breakpoints, by_itself, from, to, break_, part.breakpoints);
     part.pins.push_back(to);
+    part.breakpoints.push_back(to.parameter);
     // Zones that go over a border are cut there.
     while (zone_ < whole_.zones.size() && whole_.zones[zone_].to <= from.parameter) ++zone_;
     for (std::size_t i = zone_; i < whole_.zones.size(); ++i) {
@@ -781,13 +729,11 @@ class SplineCutter {
  private:
   // Those inside ]from, to[, from `next` on.
   template <typename Item, typename ParameterOf>
-  static std::span<const Item> take(const std::vector<Item>& list, const ParameterOf& parameter_of,
-                                    const Pin& from, const Pin& to, std::size_t& next) {
+  static void take(const std::vector<Item>& list, const ParameterOf& parameter_of, const Pin& from,
+                   const Pin& to, std::size_t& next, std::vector<Item>& taken) {
     const auto at = [&] { return std::invoke(parameter_of, list[next]); };
     while (next < list.size() && at() <= from.parameter) ++next;
-    const std::size_t begin = next;
-    while (next < list.size() && at() < to.parameter) ++next;
-    return std::span(list).subspan(begin, next - begin);
+    while (next < list.size() && at() < to.parameter) taken.push_back(list[next++]);
   }
 
   const FitProblem& whole_;
@@ -833,6 +779,7 @@ void PartedFit::start(const FitProblem& problem) {
   assemble(problem);
 }
 
+// Part by part: each gives its problem away for the new one.
 void PartedFit::refit(const FitProblem& problem, double closest) {
   const std::vector<Pin> ends = ends_of_parts(problem);
   if (ends.empty()) return start(problem);

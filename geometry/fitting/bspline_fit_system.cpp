@@ -136,12 +136,11 @@ void add_to(double* at, const Pair& pair) { put(pair_at(at) + pair, at); }
 
 }  // namespace
 
-std::vector<double> required_breaks(std::span<const Pin> pins,
-                                    std::span<const StraightZone> zones) {
+std::vector<double> required_breaks(const FitProblem& problem) {
   std::vector<double> required;
-  required.reserve(pins.size() + 2 * zones.size());
-  for (const Pin& pin : pins) required.push_back(pin.parameter);
-  for (const StraightZone& zone : zones) {
+  required.reserve(problem.pins.size() + 2 * problem.zones.size());
+  for (const Pin& pin : problem.pins) required.push_back(pin.parameter);
+  for (const StraightZone& zone : problem.zones) {
     required.push_back(zone.from);
     required.push_back(zone.to);
   }

@@ -47,8 +47,7 @@ struct FitProblem {
 };
 
 // Every pin and both ends of every zone, increasing, each once.
-[[nodiscard]] std::vector<double> required_breaks(std::span<const Pin> pins,
-                                                  std::span<const StraightZone> zones);
+[[nodiscard]] std::vector<double> required_breaks(const FitProblem& problem);
 
 // Parts of the parameter; single parameters have from == to.
 struct ParameterRange {
@@ -147,7 +146,6 @@ struct SampleState {
   double base = 0;                 // weight that makes the distances scatter as expected
   double push = 0;                 // weight of the limit, on top of it
   double distance = 0;             // mm, in the last solution
-  double scattered = 0;            // the square of that over the scatter, where one is expected
   double rms = 0;                  // of the distances around over their scatter, one step before
 };
 

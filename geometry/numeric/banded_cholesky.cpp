@@ -68,22 +68,19 @@ void BandedMatrix::inverse_band(BandedMatrix& inverse, std::size_t first) const 
   const std::size_t n = rows_.size();
   inverse.reset(n);
   auto& z = inverse.rows_;
-  // Of the three rows below: Z(i+1, i+1), Z(i+2, i+1) and so on; all zero below the last row.
-  double z11 = 0, z21 = 0, z22 = 0, z31 = 0, z32 = 0, z33 = 0;
+  const auto entry = [&](std::size_t a, std::size_t b) {
+    return a >= b ? z[a][a - b] : z[b][b - a];
+  };
   for (std::size_t i = n; i-- > first;) {
-    const std::size_t below = std::min<std::size_t>(n - 1 - i, kBands);
-    const double l1 = below > 0 ? rows_[i + 1][1] : 0;
-    const double l2 = below > 1 ? rows_[i + 2][2] : 0;
-    const double l3 = below > 2 ? rows_[i + 3][3] : 0;
-    const double z3 = -(l1 * z31 + l2 * z32 + l3 * z33);
-    const double z2 = -(l1 * z21 + l2 * z22 + l3 * z32);
-    const double z1 = -(l1 * z11 + l2 * z21 + l3 * z31);
-    const double diagonal = rows_[i][0] - l1 * z1 - l2 * z2 - l3 * z3;
-    if (below > 2) z[i + 3][3] = z3;
-    if (below > 1) z[i + 2][2] = z2;
-    if (below > 0) z[i + 1][1] = z1;
+    const std::size_t last = std::min(i + kBands, n - 1);
+    for (std::size_t j = last; j > i; --j) {
+      double sum = 0;
+      for (std::size_t k = i + 1; k <= last; ++k) sum -= rows_[k][k - i] * entry(k, j);
+      z[j][j - i] = sum;
+    }
+    double diagonal = rows_[i][0];
+    for (std::size_t k = i + 1; k <= last; ++k) diagonal -= rows_[k][k - i] * entry(k, i);
     z[i][0] = diagonal;
-    z33 = z22, z32 = z21, z31 = z2, z22 = z11, z21 = z1, z11 = diagonal;
   }
 }
 

@@ -162,26 +162,19 @@ bool is_straight_within(std::span<const Point3> section, double limit) {
   });
 }
 
-// The denoised positions; of a section only where `wants` says so of its first and last vertex.
-template <typename Function>
-std::vector<Point3> denoised_sections(std::span<const Point3> points, const PathFeatures& features,
-                                      const Function& wants) {
+}  // namespace
+
+std::vector<Point3> denoised_positions(std::span<const Point3> points,
+                                       const PathFeatures& features) {
   std::vector<Point3> denoised(points.begin(), points.end());
   straighten_lines(points, features, denoised);
   const std::span<const double> parameters = features.parameters;
   each_section(points.size(), features, [&](std::size_t first, std::size_t last) {
     const std::size_t count = last + 1 - first;
-    if (count < kDenoiseTuning.fewest || !wants(first, last)) return;
+    if (count < kDenoiseTuning.fewest) return;
     denoise_section(std::span(denoised).subspan(first, count), parameters.subspan(first, count));
   });
   return denoised;
-}
-
-}  // namespace
-
-std::vector<Point3> denoised_positions(std::span<const Point3> points,
-                                       const PathFeatures& features) {
-  return denoised_sections(points, features, [](std::size_t, std::size_t) { return true; });
 }
 
 std::vector<Point3> denoised_among_noise(std::span<const Point3> points,
@@ -194,12 +187,7 @@ std::vector<Point3> denoised_among_noise(std::span<const Point3> points,
     return is_much(noise) || noise > kDenoiseTuning.may_fill * limit;
   };
   if (std::ranges::none_of(features.noise, may_fill)) return {};
-  const auto wants = [&](std::size_t first, std::size_t last) {
-    const std::size_t count = last + 1 - first;
-    return std::ranges::any_of(std::span(features.noise).subspan(first, count), may_fill) &&
-           !is_straight_within(points.subspan(first, count), limit);
-  };
-  std::vector<Point3> denoised = denoised_sections(points, features, wants);
+  std::vector<Point3> denoised = denoised_positions(points, features);
   std::vector<std::size_t> beyond = {0};  // so many of the vertices before
   for (std::size_t i = 0; i < points.size(); ++i) {
     const bool is_beyond = (denoised[i] - points[i]).norm() > limit;
@@ -218,6 +206,11 @@ std::vector<Point3> denoised_among_noise(std::span<const Point3> points,
       denoised[i] = points[i];
     }
   }
+  each_section(points.size(), features, [&](std::size_t first, std::size_t last) {
+    const auto section = points.subspan(first, last + 1 - first);
+    if (section.size() < 3 || !is_straight_within(section, limit)) return;
+    std::ranges::copy(section.subspan(1, section.size() - 2), &denoised[first + 1]);
+  });
   if (!any) denoised.clear();
   return denoised;
 }

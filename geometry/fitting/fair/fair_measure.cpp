@@ -15,56 +15,24 @@ constexpr int kParts = 4;
 constexpr int kMoreParts = 24;
 constexpr double kLookCloser = 0.6;
 
-// A segment that many places are looked at beside.
-class Segment {
- public:
-  Segment() = default;
-  Segment(const Point3& from, const Point3& to)
-      : from_(from), along_(to - from), square_(along_.squaredNorm()) {}
-
-  // mm^2
-  [[nodiscard]] double squared_distance(const Point3& place) const {
-    const Vector3 off = place - from_;
-    const double part = square_ > 0 ? std::clamp(off.dot(along_) / square_, 0.0, 1.0) : 0.0;
-    return (off - part * along_).squaredNorm();
+// Distance to an edge or to its neighbours, the least of them; `enough` ends the search.
+double distance_beside(std::span<const Point3> points, std::size_t edge, const Point3& p,
+                       double enough) {
+  double nearest = distance_to_segment(p, points[edge], points[edge + 1]);
+  if (nearest > enough && edge > 0) {
+    nearest = std::min(nearest, distance_to_segment(p, points[edge - 1], points[edge]));
   }
-
- private:
-  Point3 from_ = Point3::Zero();
-  Vector3 along_ = Vector3::Zero();
-  double square_ = 0;  // mm^2, of its length
-};
-
-// An edge and its neighbours. The distance to them is that to the nearest one.
-class EdgeBeside {
- public:
-  EdgeBeside(std::span<const Point3> points, std::size_t edge)
-      : edge_(points[edge], points[edge + 1]) {
-    if (edge > 0) neighbours_[count_++] = {points[edge - 1], points[edge]};
-    if (edge + 2 < points.size()) neighbours_[count_++] = {points[edge + 1], points[edge + 2]};
+  if (nearest > enough && edge + 2 < points.size()) {
+    nearest = std::min(nearest, distance_to_segment(p, points[edge + 1], points[edge + 2]));
   }
+  return nearest;
+}
 
-  // mm^2; `enough` ends the search.
-  [[nodiscard]] double squared_distance(const Point3& place, double enough) const {
-    double nearest = edge_.squared_distance(place);
-    for (std::size_t i = 0; i < count_ && nearest > enough; ++i) {
-      nearest = std::min(nearest, neighbours_[i].squared_distance(place));
-    }
-    return nearest;
-  }
-
- private:
-  Segment edge_;
-  std::array<Segment, 2> neighbours_;
-  std::size_t count_ = 0;
-};
-
-// The greatest squared distance of so many parts of [from, to[ from the edge, or `worst`.
-double worst_of_piece(SplineWalk& curve, const EdgeBeside& edge, double from, double to, int parts,
-                      double worst) {
+double worst_of_piece(SplineWalk& curve, std::span<const Point3> points, std::size_t edge,
+                      double from, double to, int parts, double worst) {
   for (int k = 0; k < parts; ++k) {
     const Point3 here = curve.point_at(from + (to - from) * k / parts);
-    worst = std::max(worst, edge.squared_distance(here, worst));
+    worst = std::max(worst, distance_beside(points, edge, here, worst));
   }
   return worst;
 }
@@ -168,16 +136,16 @@ double nearest_parameter(SplineWalk& curve, std::span<const Point3> points,
 double edge_deviation(SplineWalk& curve, const VertexPlaces& path, std::size_t edge, double limit) {
   const double from = path.parameters[edge];
   const double to = path.parameters[edge + 1];
-  const EdgeBeside beside(path.points, edge);
-  const double close = kLookCloser * kLookCloser * limit * limit;
-  double worst = (curve.point_at(from) - path.points[edge]).squaredNorm();
+  double worst = (curve.point_at(from) - path.points[edge]).norm();
   for (double a = from; a < to;) {
     const double b = std::min(to, std::max(curve.end_of_piece(a), std::nextafter(a, to)));
-    worst = worst_of_piece(curve, beside, a, b, kParts, worst);
-    if (worst > close) worst = worst_of_piece(curve, beside, a, b, kMoreParts, worst);
+    worst = worst_of_piece(curve, path.points, edge, a, b, kParts, worst);
+    if (worst > kLookCloser * limit) {
+      worst = worst_of_piece(curve, path.points, edge, a, b, kMoreParts, worst);
+    }
     a = b;
   }
-  return std::sqrt(std::max(worst, (curve.point_at(to) - path.points[edge + 1]).squaredNorm()));
+  return std::max(worst, (curve.point_at(to) - path.points[edge + 1]).norm());
 }
 
 double greatest_deviation(const BsplineCurve& curve, const VertexPlaces& path, double limit) {

@@ -299,7 +299,7 @@ class ProblemMaker {
     std::ranges::sort(corner_knots_);
     const auto added = wished.insert(wished.end(), corner_knots_.begin(), corner_knots_.end());
     std::inplace_merge(wished.begin(), added, wished.end());
-    const std::vector<double> needed = required_breaks(problem_.pins, problem_.zones);
+    const std::vector<double> needed = required_breaks(problem_);
     std::vector<double> kept;
     kept.reserve(wished.size());
     std::size_t zone = 0;
