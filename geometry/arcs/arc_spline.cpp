@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <functional>
 #include <limits>
 #include <numeric>
@@ -112,11 +111,6 @@ class LeadingStops {
   std::vector<Lead> leads_;
 };
 
-// std::round without a call, for what is far below 2^63.
-double nearest_whole(double value) {
-  return static_cast<double>(static_cast<std::int64_t>(value + (value < 0 ? -0.5 : 0.5)));
-}
-
 double angle_between(const Vector2& from, const Vector2& to) {
   return std::atan2(cross(from, to), from.dot(to));
 }
@@ -130,7 +124,6 @@ class Search {
         band_(points, {options.tolerance, options.outside, 1 / options.min_radius,
                        options.max_sweep, effort_.stride}),
         count_(band_.samples().size()),
-        per_grid_(1 / options.grid),
         leading_(effort_.width, effort_.of_one_place),
         best_arcs_(at_most + 1) {
     if (options.end_angle) end_along_ = unit_vector(*options.end_angle);
@@ -256,8 +249,8 @@ class Search {
 
   [[nodiscard]] Point2 rounded(const Point2& p) const {
     if (!(options_.grid > 0)) return p;
-    return {nearest_whole(p.x() * per_grid_) * options_.grid,
-            nearest_whole(p.y() * per_grid_) * options_.grid};
+    return {std::round(p.x() / options_.grid) * options_.grid,
+            std::round(p.y() / options_.grid) * options_.grid};
   }
 
   // The stop there, for the arc that leaves node `from` along its tangent: a line where that is
@@ -561,7 +554,6 @@ class Search {
   const Effort& effort_;
   PlaneBand band_;
   std::size_t count_;
-  double per_grid_;  // 1/mm
   std::optional<Vector2> end_along_;
   std::vector<Node> nodes_;
   std::vector<Stop> found_;                       // from the nodes of a level

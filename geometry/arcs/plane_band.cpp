@@ -31,7 +31,7 @@ class ClosingFan {
         steepest_(steepest) {}
 
   // False when no arc passes this place as well; the range stays as it was.
-  [[gnu::always_inline]] bool narrow(const Point2& sample) {
+  bool narrow(const Point2& sample) {
     const Vector2 way = sample - place_;
     const double x = way.dot(along_);
     const double y = cross(along_, way);

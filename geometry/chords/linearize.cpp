@@ -279,6 +279,13 @@ bool is_corner(const BsplineCurve& curve, double u) {
   return end - first >= curve.basis().degree();
 }
 
+std::vector<LinkVertex> on_curve(const BsplineCurve& curve, std::span<const double> parameters) {
+  std::vector<LinkVertex> vertices;
+  vertices.reserve(parameters.size());
+  for (const double u : parameters) vertices.push_back({curve.point_at(u), u});
+  return vertices;
+}
+
 // From the chord between two points of the curve to its middle point, across the chord: the height
 // of a bend, nothing where the curve crosses its chord.
 Vector3 bow(const BsplineCurve& curve, double from, double to) {
@@ -294,9 +301,7 @@ Vector3 bow(const BsplineCurve& curve, double from, double to) {
 
 std::vector<LinkVertex> balanced_chords(const BsplineCurve& curve,
                                         std::span<const double> parameters) {
-  std::vector<LinkVertex> vertices;
-  vertices.reserve(parameters.size());
-  for (const double u : parameters) vertices.push_back({curve.point_at(u), u});
+  std::vector<LinkVertex> vertices = on_curve(curve, parameters);
   Vector3 before = Vector3::Zero();
   for (std::size_t i = 0; i + 1 < vertices.size(); ++i) {
     const double u = vertices[i].parameter;
@@ -307,15 +312,40 @@ std::vector<LinkVertex> balanced_chords(const BsplineCurve& curve,
   return vertices;
 }
 
+namespace {
+
+// Which vertices stay: both ends and corners, and what is next to these across a chord of less than
+// half of the next one's length, which would be turned by more than the bend itself.
+std::vector<bool> staying(const BsplineCurve& curve, std::span<const LinkVertex> vertices) {
+  const std::size_t last = vertices.size() - 1;
+  std::vector<bool> fixed(vertices.size());
+  for (std::size_t i = 0; i <= last; ++i) {
+    fixed[i] = i == 0 || i == last || is_corner(curve, vertices[i].parameter);
+  }
+  const auto length = [&](std::size_t a, std::size_t b) {
+    return (vertices[b].place - vertices[a].place).norm();
+  };
+  std::vector<bool> stays = fixed;
+  for (std::size_t i = 1; i < last; ++i) {
+    const double before = length(i - 1, i);
+    const double after = length(i, i + 1);
+    if ((fixed[i - 1] && 2 * before < after) || (fixed[i + 1] && 2 * after < before)) {
+      stays[i] = true;
+    }
+  }
+  return stays;
+}
+
+}  // namespace
+
 // With vertices moved by d, a chord of length l whose bend is b high is off the curve at its part x
 // by 4 x (1 - x) b - (1 - x) d0 - x d1. Where the sum of its squares is least, at each vertex
 //   l0 (d- + 2 d) + l1 (2 d + d+) = 2 (l0 b0 + l1 b1),
-// of the chords that meet there: solved from one fixed vertex to the next by elimination.
+// of the chords that meet there: solved from one vertex that stays to the next by elimination.
 std::vector<LinkVertex> nearest_chords(const BsplineCurve& curve,
                                        std::span<const double> parameters) {
-  std::vector<LinkVertex> vertices;
-  vertices.reserve(parameters.size());
-  for (const double u : parameters) vertices.push_back({curve.point_at(u), u});
+  std::vector<LinkVertex> vertices = on_curve(curve, parameters);
+  const std::vector<bool> stays = staying(curve, vertices);
   std::vector<double> ratios(vertices.size());  // what of d+ is taken from d
   std::vector<Vector3> moves(vertices.size(), Vector3::Zero());
   Vector3 before = Vector3::Zero();  // the last chord's bend by its length
@@ -323,7 +353,7 @@ std::vector<LinkVertex> nearest_chords(const BsplineCurve& curve,
   for (std::size_t i = 0; i + 1 < vertices.size(); ++i) {
     const double length = (vertices[i + 1].place - vertices[i].place).norm();
     const Vector3 bend = length * bow(curve, parameters[i], parameters[i + 1]);
-    if (i > 0 && length_before + length > 0 && !is_corner(curve, parameters[i])) {
+    if (!stays[i] && length_before + length > 0) {
       const double own = 2 * (length_before + length) - length_before * ratios[i - 1];
       ratios[i] = length / own;
       moves[i] = (2 * (before + bend) - length_before * moves[i - 1]) / own;

@@ -109,6 +109,17 @@ void append_bend(RunBend bend, std::size_t of_block, double max_chord_error, Run
                              whole / (static_cast<double>(chords) * static_cast<double>(chords)));
 }
 
+std::vector<double> edge_feeds(const Run& run) {
+  std::vector<double> feeds(run.points.size() - 1);
+  auto change = run.feeds.begin();
+  double feed = 0;
+  for (std::size_t i = 0; i < feeds.size(); ++i) {
+    for (; change != run.feeds.end() && change->vertex <= i; ++change) feed = change->feed;
+    feeds[i] = feed;
+  }
+  return feeds;
+}
+
 std::size_t motion_count(const Run& run) {
   std::size_t count = run.points.size() - 1;
   for (const RunBend& bend : run.bends) count -= bend.last - bend.first - 1;

@@ -20,6 +20,9 @@ void append_bend(RunBend bend, std::size_t of_block, double max_chord_error, Run
 
 [[nodiscard]] std::size_t motion_count(const Run& run);
 
+// mm/min, of each edge between two vertices.
+[[nodiscard]] std::vector<double> edge_feeds(const Run& run);
+
 struct RunMotion {
   geometry::PathPiece piece;
   std::size_t first = 0;  // vertex where it starts

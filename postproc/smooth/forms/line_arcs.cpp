@@ -9,6 +9,7 @@
 #include "geometry/arcs/circle_fit.h"
 #include "geometry/basic/rounding.h"
 #include "geometry/path/plane_curve.h"
+#include "postproc/runs/run_path.h"
 #include "postproc/smooth/forms/arc_moves.h"
 
 namespace batten::postproc {
@@ -99,12 +100,8 @@ std::vector<PlannedMove> moves_along(const LineArcs& shape, const Run& run,
   const auto frame = geometry::PlaneFrame::across(axis);
   const double height = run.points.front()[shape.normal];
   std::vector<PlannedMove> moves;
-  auto change = run.feeds.begin();
-  double feed = run.feeds.front().feed;
+  const std::vector<double> feeds = edge_feeds(run);
   for (const LineArcSection& section : shape.sections) {
-    for (; change != run.feeds.end() && change->vertex <= section.first; ++change) {
-      feed = change->feed;
-    }
     const Point3& from = run.points[section.first];
     const Point3& to = run.points[section.last];
     geometry::PathPiece piece = geometry::Line{from, to};
@@ -113,7 +110,7 @@ std::vector<PlannedMove> moves_along(const LineArcs& shape, const Run& run,
       piece = geometry::Arc{from, to, frame.global({center.x(), center.y(), height}), axis,
                             section.circle->angles.back()};
     }
-    moves.push_back({piece, feed, {}, fair.vertex_parameters[section.first]});
+    moves.push_back({piece, feeds[section.first], {}, fair.vertex_parameters[section.first]});
   }
   return moves;
 }

@@ -5,6 +5,7 @@
 #include "geometry/chords/ilca.h"
 #include "geometry/chords/linearize.h"
 #include "geometry/chords/min_link.h"
+#include "postproc/runs/run_path.h"
 #include "postproc/smooth/forms/output_plan.h"
 
 namespace batten::postproc {
@@ -206,12 +207,10 @@ OutputPlan plan_vertices(const Run& run, const geometry::SmoothCurve& meant,
   }
   OutputPlan plan;
   plan.form = Form::kLines;
-  auto change = run.feeds.begin();
-  double feed = run.feeds.front().feed;
+  const std::vector<double> feeds = edge_feeds(run);
   for (std::size_t i = 0; i + 1 < places.size(); ++i) {
-    for (; change != run.feeds.end() && change->vertex <= i; ++change) feed = change->feed;
     plan.moves.push_back({geometry::Line{places[i].place, places[i + 1].place},
-                          feed,
+                          feeds[i],
                           {},
                           fair.vertex_parameters[i]});
   }

@@ -10,6 +10,7 @@
 
 #include "postproc/machine/models/junction_speed.h"
 #include "postproc/machine/models/velocity_profile.h"
+#include "postproc/runs/run_path.h"
 #include "postproc/smooth/selection/candidate.h"
 #include "postproc/smooth/selection/selection.h"
 
@@ -192,25 +193,14 @@ double greatest_corner_speed(const Vector3& a, const Vector3& b, double far,
   return std::sqrt(limit_along(turn.normalized(), accelerations) * radius);
 }
 
-// mm/s along each edge of the run, as programmed.
-std::vector<double> edge_feeds(const Run& run) {
-  std::vector<double> feeds(run.points.size() - 1);
-  std::size_t next = 0;
-  double feed = 0;
-  for (std::size_t i = 0; i < feeds.size(); ++i) {
-    while (next < run.feeds.size() && run.feeds[next].vertex <= i) feed = run.feeds[next++].feed;
-    feeds[i] = feed / kMinute;
-  }
-  return feeds;
-}
-
 }  // namespace
 
 double time_at_feeds(const Run& run, const Machine& machine) {
   const std::vector<double> feeds = edge_feeds(run);
   double time = 0;
   for (std::size_t i = 0; i < feeds.size(); ++i) {
-    time += (run.points[i + 1] - run.points[i]).norm() / std::min(feeds[i], machine.max_velocity());
+    time += (run.points[i + 1] - run.points[i]).norm() /
+            std::min(feeds[i] / kMinute, machine.max_velocity());
   }
   return time;
 }
@@ -237,7 +227,7 @@ double least_time(const Run& run, double tolerance, const Machine& machine,
     const PathLimits most = limits.along(edge / length);
     VelocityStretch stretch;
     stretch.length = length - saved;
-    stretch.max_velocity = std::min(feeds[i], most.velocity);
+    stretch.max_velocity = std::min(feeds[i] / kMinute, most.velocity);
     stretch.acceleration = most.acceleration;
     chain.push_back(stretch);
   }

@@ -179,6 +179,16 @@ TEST(NearestChords, AreNearestInTheMeanSquare) {
   }
 }
 
+// A short rest at the end of a row: moved away from the end, which stays, it would be turned by far
+// more than the row bends there.
+TEST(NearestChords, LeaveAVertexBesideAnEndWhereItIsNear) {
+  const BsplineCurve curve = kFlatParabola.curve();
+  const std::vector<double> x = {2, 2.1, 2.6, 3.1, 3.6, 4.1, 4.3};
+  const std::vector<LinkVertex> nearest = nearest_chords(curve, x);
+  for (const std::size_t i : {1u, 5u}) EXPECT_EQ(nearest[i].place, curve.point_at(x[i]));
+  for (const std::size_t i : {2u, 3u, 4u}) EXPECT_NE(nearest[i].place, curve.point_at(x[i]));
+}
+
 TEST(NearestChords, OfEvenOnesAreBalanced) {
   const BsplineCurve curve = kFlatParabola.curve();
   std::vector<double> x;

@@ -81,6 +81,18 @@ TEST(CurveForms, OfCoarseChordsAreTheirVerticesMoved) {
   }
 }
 
+// What is printed anew would be as far off as the chords are.
+TEST(CurveForms, HaveNoVerticesMovedByLessThanIsPrinted) {
+  std::string text = "G21 G90 G17 G64\nG0 X0 Y0\nF1200\n";
+  for (int i = 1; i <= 100; ++i) {
+    const double x = 0.35 * i;
+    text += fmt::format("G1 X{:.2f} Y{:.4f}\n", x, 0.00004 * x * x + 0.001 * std::sin(x));
+  }
+  const OneRun run(text);
+  const SmoothedRun all = run.smooth(options_for("grbl"));
+  EXPECT_TRUE(std::ranges::none_of(all.candidates, &Candidate::has_vertices));
+}
+
 // They are what is left to do where no form is better than the run.
 TEST(CurveForms, HaveVerticesMovedWhereNothingElseWillDo) {
   const OneRun run(wave_program({.noise = 0.001}));

@@ -199,6 +199,39 @@ INSTANTIATE_TEST_SUITE_P(Plan, PlanLinesFineness,
                                                   10}),
                          [](const auto& test) { return test.param.name; });
 
+// Vertices of a curve, 3 mm apart: chords 0.2 mm high at the crests, where two thirds of it are
+// more than may be.
+TEST(PlanVertices, AreMovedByNoMoreThanAskedForAndHaveTheirFeeds) {
+  Smoothed s = wave();
+  Smoothed coarse{{}, {s.fair.curve, {}, 0, 0, 0, 0}};
+  for (std::size_t i = 0; i < s.run.points.size(); i += 6) {
+    coarse.run.points.push_back(s.run.points[i]);
+    coarse.fair.vertex_parameters.push_back(s.fair.vertex_parameters[i]);
+  }
+  coarse.run.feeds = {{0, 1000}, {4, 500}, {9, 800}};
+  const auto& points = coarse.run.points;
+  double before = 0;
+  for (const double most : {0.02, 0.05, 1.0}) {
+    const Machine machine = machine_with(0.001);
+    const PlanOptions options = Planning{.max_deviation = most}.options(machine);
+    const OutputPlan plan = plan_vertices(coarse.run, coarse.fair, coarse.fair, options);
+    ASSERT_EQ(plan.moves.size(), points.size() - 1);
+    double farthest = 0;
+    for (std::size_t i = 0; i < plan.moves.size(); ++i) {
+      const auto& line = std::get<geometry::Line>(plan.moves[i].piece);
+      farthest = std::max(farthest, (line.start - points[i]).norm());
+      EXPECT_EQ(plan.moves[i].feed, i < 4 ? 1000 : i < 9 ? 500 : 800) << i;
+      if (i == 0) continue;
+      EXPECT_EQ(line.start, geometry::end_point(plan.moves[i - 1].piece));
+    }
+    EXPECT_EQ(geometry::start_point(plan.moves.front().piece), points.front());
+    EXPECT_EQ(geometry::end_point(plan.moves.back().piece), points.back());
+    EXPECT_LE(farthest, most * (1 + 1e-9));
+    EXPECT_GT(farthest, before);
+    before = farthest;
+  }
+}
+
 TEST(PlanLines, AStraightRunIsOneLine) {
   const auto f = [](double u) { return Point3(u, 2 * u, -u / 3); };
   const Smoothed straight = smoothed(geometry::curve_of(f, 0, 50, 100), 101, 1000);
