@@ -78,17 +78,19 @@ class RunSmoother {
     meant.accurate = true;
     const bool sharp = !options().keep_corners_deg && has_sharp_corner(run().points);
     if (sharp) meant.keep_found_corner = kRun.sharp_corner;
-    const auto fair = curve_by(Method::kFair, meant);
+    CurveRequest roomy = meant;
+    roomy.tolerance *= kRun.more_room;
+    const auto fair = curve_by(Method::kFair, is_hopeless ? roomy : meant);
     if (is_hopeless) {
       result_.left_out = true;
       if (fair) {
-        find_meant(fair->path, meant);
+        find_meant(fair->path, std::nullopt);
         fits_ = true;
         try_vertices(*fair);
       }
     } else if (method == Method::kBest || method == Method::kFair) {
       if (fair) {
-        find_meant(fair->path, meant);
+        find_meant(fair->path, roomy);
         add_candidates_of(*fair);
         try_simpler(meant);
         if (is_worth_rounding()) try_curve(Method::kFair, curve_request(Method::kFair));
@@ -99,7 +101,7 @@ class RunSmoother {
         try_vertices(*fair);
       }
     } else if (const auto curve = curve_by(method, curve_request(method))) {
-      find_meant((fair ? *fair : *curve).path, meant);
+      find_meant((fair ? *fair : *curve).path, roomy);
       add_candidates_of(*curve);
     }
     if (!fits_) return gcode::reason::kNoFit;
@@ -131,8 +133,8 @@ class RunSmoother {
 
   // The path that was meant is what the vertices are on, where that is lines and arcs, and else the
   // curve through them. Where chords take much of the tolerance, the fair curve has to run between
-  // vertices and chords: then it is fitted once more, with more room.
-  void find_meant(const geometry::SmoothCurve& fair, CurveRequest request) {
+  // vertices and chords: then it is fitted once more by `roomy`, if that is not how it was made.
+  void find_meant(const geometry::SmoothCurve& fair, const std::optional<CurveRequest>& roomy) {
     fair_ = fair;
     RunFacts& facts = result_.facts;
     facts.noise = fair.noise;
@@ -142,9 +144,8 @@ class RunSmoother {
     const bool is_known = shape_ && shape_->is_certain;
     meant_.emplace(*fair_, is_known ? moves_along(*shape_, run(), *fair_) : MeantPath::Moves());
     facts.off = meant_->distance_of(run());
-    if (!is_known && facts.off > kRun.takes_much * request.tolerance) {
-      request.tolerance *= kRun.more_room;
-      const auto through = curve_by(Method::kFair, request);
+    if (!is_known && roomy && facts.off > kRun.takes_much / kRun.more_room * roomy->tolerance) {
+      const auto through = curve_by(Method::kFair, *roomy);
       if (through) fair_ = through->path;
       facts.off = meant_->distance_of(run());
     }
