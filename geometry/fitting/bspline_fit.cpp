@@ -559,7 +559,7 @@ class AdaptiveFit {
       const double move = (place - spline_.points[i]).norm();
       if (point.left == 0) {
         const bool wakes = move > kFitTuning.moved * point.limit;
-        if (wakes) point.left = phase == Phase::kClose ? 1 : kFitTuning.woken;
+        if (wakes) point.left = phase == Phase::kClose ? 1 : kFitTuning.solutions;
       } else if (phase != Phase::kDecide) {
         const bool is_still = move <= kFitTuning.still * point.limit;
         point.left = std::max(0, point.left - (is_still ? kFitTuning.still_counts : 1));
@@ -588,7 +588,8 @@ class AdaptiveFit {
       const bool fades = phase == Phase::kRelax || (phase == Phase::kDecide && inside);
       // A sample without scatter is held by its limit alone in the end.
       if (fades && !(samples_[i].scatter > 0)) {
-        state.base = bounded_weight(kFitTuning.let_go * state.base, state.stiffness);
+        const double left = phase == Phase::kRelax ? kFitTuning.let_go : kFitTuning.fade;
+        state.base = bounded_weight(left * state.base, state.stiffness);
       }
       if (!inside) {
         if (!std::exchange(inverted, true)) system_.invert(spline_, state.row.first);
@@ -608,7 +609,7 @@ class AdaptiveFit {
   void wake(std::size_t first_point) {
     for (std::size_t j = 0; j < 4; ++j) {
       PointState& point = points_[first_point + j];
-      point.left = std::max(point.left, kFitTuning.woken);
+      point.left = std::max(point.left, kFitTuning.solutions);
       point.undecided = true;
     }
   }

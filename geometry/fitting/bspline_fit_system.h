@@ -64,7 +64,7 @@ struct IndexRange {
 struct FitTuning {
   // [..]: what fails at half and double (docs/ARCHITECTURE.md).
   int max_refinements = 10;  // rounds of splitting the spans that cannot hold their samples
-  int passes = 8;            // solutions per round that tell which spans those are
+  int passes = 4;            // solutions per round that tell which spans those are
   int last_passes = 16;      // solutions, when weights have settled, to bring all inside
 
   // Weights stay above this part of the stiffness of the curve, so that a section whose samples all
@@ -81,9 +81,12 @@ struct FitTuning {
   // faster than weights fall, so a weight that falls by the ratio does not fall too far.
   double growth = 8;
   double fall = 1.0 / 32;
-  // What is left of the base weight of a sample without scatter after each step: little enough to
-  // vanish soon, enough for the weights of limits to follow.
-  double let_go = 0.25;
+  // What is left of the base weight of a sample without scatter after each step. While knots are
+  // decided: enough for the curve to stay close to all samples, so that a span that cannot follow
+  // them shows. While weights settle: so little that it vanishes within half of the solutions, and
+  // the weights of limits have the others to follow.
+  double fade = 0.25;
+  double let_go = 1.0 / 32;
   // Scatter is judged over this many neighbours on either side: enough for a standard error of a
   // fifth, few enough to follow a change of noise along the path.
   std::size_t scatter_window = 10;
@@ -106,19 +109,18 @@ struct FitTuning {
   double hopeless = 2.5;        // heavier weights would leave distances smaller by this at most
   double nearly_inside = 1.05;  // what is left after the last solution is no reason for a knot
 
-  // A control point that wakes is solved for so many times, whatever comes of it: a number that is
-  // the same for all does not depend on rounding, and weights have settled by then.
-  int solutions = 20;
+  // A control point that is new or wakes is solved for so many times, whatever comes of it: a
+  // number that is the same for all does not depend on rounding, and weights have settled by then.
+  int solutions = 10;
   // A solution in which it moves by less than this part of its limit counts as several: what the
-  // solutions that are left would still move it by is a fiftieth of the limit at the most.
+  // solutions that are left would still move it by is a hundredth of the limit at the most.
   double still = 1e-3;
   int still_counts = 4;
-  // One that rests wakes when it is moved by this part of its limit, for so many solutions.
-  double moved = 0.01;
-  int woken = 8;
+  // One that rests wakes when it is moved by this part of its limit.
+  double moved = 0.02;
   // Control points on either side that are solved for with those that are awake: the influence of a
   // sample dies out over some of them. Where more of them move, these wake in turn.
-  std::size_t reach = 8;
+  std::size_t reach = 6;
 };
 inline constexpr FitTuning kFitTuning;
 

@@ -53,7 +53,10 @@ bool BandedMatrix::solve(std::vector<Value>& right) {
   }
   for (std::size_t i = n; i-- > 0;) {
     Value value = right[i] * rows_[i][0];
-    for (std::size_t k = 1; k <= kBands && i + k < n; ++k) value -= rows_[i + k][k] * right[i + k];
+    // The one solved for last comes last: the others need not wait for it.
+    for (std::size_t k = std::min<std::size_t>(kBands, n - 1 - i); k > 0; --k) {
+      value -= rows_[i + k][k] * right[i + k];
+    }
     right[i] = value;
   }
   return true;
