@@ -60,6 +60,8 @@ class CurveForms {
         curve_(given.curve),
         bends_(given.bends),
         share_(given.share),
+        for_time_(given.for_time && setting.task.options.output == Form::kAuto &&
+                  !setting.task.options.linearize),
         pieces_(curve_.path.curve),
         offers_(setting, given, result.facts, pieces_),
         result_(result),
@@ -67,6 +69,7 @@ class CurveForms {
 
   void add() {
     const Form wanted = task_.options.output;
+    if (for_time_ && !wins_time()) return;
     make_best(offers_.curves());
     if (wanted == Form::kCurves && has_form(Form::kCurves)) return;
     if (wanted != Form::kLines) {
@@ -91,6 +94,16 @@ class CurveForms {
   [[nodiscard]] bool has_one() const {
     const Form wanted = task_.options.output;
     return wanted == Form::kAuto ? result_.candidates.size() > first_ : has_form(wanted);
+  }
+
+  // By the farthest lines, which are a candidate then.
+  [[nodiscard]] bool wins_time() {
+    auto farthest = made(offers_.chords().back());
+    if (!farthest) return true;
+    const double before = facts().scale.original.times.programmed;
+    const double time = farthest->figures.times.programmed;
+    result_.candidates.push_back(std::move(*farthest));
+    return time <= (1 - kFormTuning.wins) * before;
   }
 
   // In the order in which they are offered, but for those that what there is then beats.
@@ -239,7 +252,11 @@ class CurveForms {
 
   void add_lines() {
     const auto named = task_.options.linearize;
-    if (!named || *named == Linearize::kChord) make_best(offers_.chords());
+    if (!named || *named == Linearize::kChord) {
+      std::vector<Offer> chords = offers_.chords();
+      if (for_time_) chords.pop_back();
+      make_best(std::move(chords));
+    }
     const bool links = linearize_of(task_.options) == Linearize::kMinLink;
     if (links || (named && *named != Linearize::kChord)) add_named_lines();
   }
@@ -274,6 +291,7 @@ class CurveForms {
   const RunCurve& curve_;
   const CurvatureProfile& bends_;
   double share_;
+  bool for_time_;
   geometry::MarkedPieces pieces_;
   FormOffers offers_;
   SmoothedRun& result_;

@@ -38,6 +38,9 @@ struct FormTuning {
   // Vertices are moved where chords are farther from the path (rms) than so many times what
   // printing them again adds.
   double over_printed = 2;
+  // What the farthest lines of a curve that is there to win time win at least, or the others do not
+  // win what larger or farther ones have to (kCost).
+  double wins = 0.005;
   double another = 0.9;               // of what is farther, at most, or it is the same again
   double bands[3] = {1, 0.97, 0.94};  // parts of the band around arcs in which few are looked for
   double of_height = 0.25;            // the rms of balanced chords by their height, at least
@@ -62,6 +65,9 @@ struct CurveOfRun {
   double share = 0;      // mm, of the tolerance: the form's
   double left = 0;       // mm, what the curve leaves of the tolerance
   bool is_first = true;  // of the run: the path that was meant, or what was asked for by name
+  // There to win time alone: where its farthest lines win next to none, no other form of it is
+  // made.
+  bool for_time = false;
 };
 
 // A form that could be made, and what it has at least.

@@ -93,7 +93,7 @@ class RunSmoother {
         find_meant(fair->path, roomy);
         add_candidates_of(*fair);
         try_simpler(meant);
-        if (is_worth_rounding()) try_curve(Method::kFair, curve_request(Method::kFair));
+        try_rounding();
         if (method == Method::kBest) {
           try_corners();
           try_tube();
@@ -172,10 +172,10 @@ class RunSmoother {
     });
   }
 
-  void try_curve(Method method, const CurveRequest& request) {
+  void try_curve(Method method, const CurveRequest& request, bool for_time = false) {
     if (is_out_of_budget()) return;
     const auto curve = curve_by(method, request);
-    if (curve) add_candidates_of(*curve);
+    if (curve) add_candidates_of(*curve, for_time);
   }
 
   // Whether less is left than what is to be begun takes at least; then the result says so.
@@ -186,13 +186,13 @@ class RunSmoother {
   }
 
   // Where it leaves some of the tolerance.
-  void add_candidates_of(const RunCurve& curve) {
+  void add_candidates_of(const RunCurve& curve, bool for_time = false) {
     const double left = shares_.smoothing + shares_.form - curve.path.deviation;
     if (!(left > 0)) return;
     fits_ = true;
     const CurvatureProfile bends(curve.path.curve);
     add_forms({task_, times_, bounds_, *meant_, shape_, budget_},
-              {curve, bends, shares_.form, left, is_first_}, result_);
+              {curve, bends, shares_.form, left, is_first_, for_time}, result_);
     is_first_ = false;
   }
 
@@ -233,7 +233,7 @@ class RunSmoother {
   void try_corners() {
     if (options().side != geometry::Side::kBoth) return;
     if (!corners_are_worth_trying(corner_part(), bounds_.least_time(), best_time())) return;
-    try_curve(Method::kGuo, curve_request(Method::kGuo));
+    try_curve(Method::kGuo, curve_request(Method::kGuo), true);
     if (!may_lead_by_corners()) return;
     for (const Method method : {Method::kOzcan, Method::kTimeOptimal}) {
       if (searches_are_worth_trying(run().points.size(), bounds_.least_time(),
@@ -243,15 +243,17 @@ class RunSmoother {
     }
   }
 
-  // Whether rounding each corner by itself comes near to the fastest form so far: a search for each
-  // is faster by some percent, where the others are not by far.
+  // Whether rounding each corner by itself wins time and comes near to the fastest form so far: a
+  // search for each is faster by some percent, where the others are not by far.
   [[nodiscard]] bool may_lead_by_corners() const {
     double by_corners = std::numeric_limits<double>::infinity();
     for (const Candidate& c : result_.candidates) {
       if (c.method != name_of(Method::kGuo)) continue;
       by_corners = std::min(by_corners, c.figures.times.programmed);
     }
-    return by_corners - fastest() <= kBounds.search_wins * best_time();
+    const double before = result_.facts.scale.original.times.programmed;
+    return by_corners <= (1 - kFormTuning.wins) * before &&
+           by_corners - fastest() <= kBounds.search_wins * best_time();
   }
 
   // Where jerk is limited, and the run is no run of corners, between which the tube has lines.
@@ -291,23 +293,30 @@ class RunSmoother {
     return context().is_piece() ? result_.facts.scale.alone : fastest();
   }
 
-  // Whether a curve that rounds corners and spends the tolerance may be better: by its time; or,
-  // where nothing is better so far, as the simpler one of fewer pieces: where few blocks are wanted
-  // or the target is told curves, or a form in far fewer blocks is slower. Not where the best
-  // form is larger than the program: what rounds corners is larger still.
-  [[nodiscard]] bool is_worth_rounding() const {
-    if (options().prefer == Prefer::kAccuracy) return false;
-    const bool simpler = wants_few_moves(options()) || options().target->curves_in_auto;
+  // A curve that rounds corners and spends the tolerance, where it may be better: as the simpler
+  // one, or by its time. Not where the best form is larger than the program: what rounds corners is
+  // larger still.
+  void try_rounding() {
+    if (options().prefer == Prefer::kAccuracy) return;
     const Selection so_far = choose(result_, options(), Among::kFormsAlone);
-    if (so_far.reason == gcode::reason::kLarger && !simpler) return false;
+    const bool fewer = wants_few_moves(options()) || options().target->curves_in_auto;
+    if (so_far.reason == gcode::reason::kLarger && !fewer) return;
     const double left = 1 - bounds_.least_time() / best_time();
     if (corner_part() >= kBounds.corners && left < kRun.left_at_corners &&
         !wants_few_moves(options())) {
-      return false;
+      return;
     }
-    if (rounding_is_worth_trying(bounds_.least_time(), best_time())) return true;
+    const bool simpler = may_be_simpler(so_far, fewer);
+    if (!simpler && !rounding_is_worth_trying(bounds_.least_time(), best_time())) return;
+    const bool for_time = !simpler && corner_part() >= kBounds.corners;
+    try_curve(Method::kFair, curve_request(Method::kFair), for_time);
+  }
+
+  // Where nothing is better so far, a curve of fewer pieces: where few blocks are wanted or the
+  // target is told curves, or a form in far fewer blocks is slower.
+  [[nodiscard]] bool may_be_simpler(const Selection& so_far, bool fewer) const {
     if (!so_far.order.empty()) return false;
-    if (simpler) return true;
+    if (fewer) return true;
     const double few = kRun.far_fewer * result_.facts.scale.original.blocks;
     return so_far.reason == gcode::reason::kSlower &&
            std::ranges::any_of(result_.candidates,
