@@ -69,7 +69,7 @@ class CurveForms {
 
   void add() {
     const Form wanted = task_.options.output;
-    if (for_time_ && !wins_time()) return;
+    if (for_time_) return add_fastest();
     make_best(offers_.curves());
     if (wanted == Form::kCurves && has_form(Form::kCurves)) return;
     if (wanted != Form::kLines) {
@@ -96,14 +96,19 @@ class CurveForms {
     return wanted == Form::kAuto ? result_.candidates.size() > first_ : has_form(wanted);
   }
 
-  // By the farthest lines, which are a candidate then.
-  [[nodiscard]] bool wins_time() {
-    auto farthest = made(offers_.chords().back());
-    if (!farthest) return true;
-    const double before = facts().scale.original.times.programmed;
-    const double time = farthest->figures.times.programmed;
-    result_.candidates.push_back(std::move(*farthest));
-    return time <= (1 - kFormTuning.wins) * before;
+  // Of a curve that is there to win time: its farthest lines, which take little to make, and what
+  // is faster only where these win some.
+  void add_fastest() {
+    std::vector<Offer> chords = offers_.chords();
+    if (auto lines = made(chords.back())) {
+      const double before = facts().scale.original.times.programmed;
+      const double time = lines->figures.times.programmed;
+      result_.candidates.push_back(std::move(*lines));
+      if (time > (1 - kFormTuning.wins) * before) return;
+    }
+    make_best(offers_.curves());
+    make_best({offers_.arcs().back()});
+    if (chords.size() > 1) make_best({chords.front()});
   }
 
   // In the order in which they are offered, but for those that what there is then beats.
@@ -252,11 +257,7 @@ class CurveForms {
 
   void add_lines() {
     const auto named = task_.options.linearize;
-    if (!named || *named == Linearize::kChord) {
-      std::vector<Offer> chords = offers_.chords();
-      if (for_time_) chords.pop_back();
-      make_best(std::move(chords));
-    }
+    if (!named || *named == Linearize::kChord) make_best(offers_.chords());
     const bool links = linearize_of(task_.options) == Linearize::kMinLink;
     if (links || (named && *named != Linearize::kChord)) add_named_lines();
   }

@@ -38,8 +38,8 @@ struct FormTuning {
   // Vertices are moved where chords are farther from the path (rms) than so many times what
   // printing them again adds.
   double over_printed = 2;
-  // What the farthest lines of a curve that is there to win time win at least, or the others do not
-  // win what larger or farther ones have to (kCost).
+  // Of the time: what the farthest lines of a curve that is there to win some win at least, or the
+  // others do not win what larger and farther forms have to (kCost).
   double wins = 0.005;
   double another = 0.9;               // of what is farther, at most, or it is the same again
   double bands[3] = {1, 0.97, 0.94};  // parts of the band around arcs in which few are looked for
