@@ -60,16 +60,16 @@ class CurveForms {
         curve_(given.curve),
         bends_(given.bends),
         share_(given.share),
-        for_time_(given.for_time && setting.task.options.output == Form::kAuto &&
-                  !setting.task.options.linearize),
         pieces_(curve_.path.curve),
         offers_(setting, given, result.facts, pieces_),
+        by_lines_(given.for_time && setting.task.options.output == Form::kAuto &&
+                  !setting.task.options.linearize && !offers_.curves_wanted()),
         result_(result),
         first_(result.candidates.size()) {}
 
   void add() {
     const Form wanted = task_.options.output;
-    if (for_time_) return add_fastest();
+    if (by_lines_) return add_fastest();
     make_best(offers_.curves());
     if (wanted == Form::kCurves && has_form(Form::kCurves)) return;
     if (wanted != Form::kLines) {
@@ -106,7 +106,6 @@ class CurveForms {
       result_.candidates.push_back(std::move(*lines));
       if (time > (1 - kFormTuning.wins) * before) return;
     }
-    make_best(offers_.curves());
     make_best({offers_.arcs().back()});
     if (chords.size() > 1) make_best({chords.front()});
   }
@@ -292,9 +291,9 @@ class CurveForms {
   const RunCurve& curve_;
   const CurvatureProfile& bends_;
   double share_;
-  bool for_time_;
   geometry::MarkedPieces pieces_;
   FormOffers offers_;
+  bool by_lines_;  // whether it wins time is told by its farthest lines
   SmoothedRun& result_;
   std::size_t first_;  // candidate of this curve
   std::optional<SlowParts> slow_parts_;

@@ -87,6 +87,9 @@ class FormOffers {
   FormOffers(const FormSetting& setting, const CurveOfRun& given, const RunFacts& facts,
              const geometry::MarkedPieces& pieces);
 
+  // Whether the target is told any.
+  [[nodiscard]] bool curves_wanted() const;
+
   // Of the target, in its own words.
   [[nodiscard]] std::vector<Offer> curves() const;
 
@@ -109,7 +112,6 @@ class FormOffers {
   [[nodiscard]] PlanOptions within(double deviation) const;
 
  private:
-  [[nodiscard]] bool curves_wanted() const;
   [[nodiscard]] bool is_first_fair() const;
   [[nodiscard]] double distance_before() const;
   [[nodiscard]] double far() const;

@@ -251,9 +251,11 @@ class RunSmoother {
       if (c.method != name_of(Method::kGuo)) continue;
       by_corners = std::min(by_corners, c.figures.times.programmed);
     }
-    const double before = result_.facts.scale.original.times.programmed;
-    return by_corners <= (1 - kFormTuning.wins) * before &&
-           by_corners - fastest() <= kBounds.search_wins * best_time();
+    const RunFacts& facts = result_.facts;
+    const double before = facts.scale.original.times.programmed;
+    const bool wins = is_forced(options().output, facts, options()) ||
+                      by_corners <= (1 - kFormTuning.wins) * before;
+    return wins && by_corners - fastest() <= kBounds.search_wins * best_time();
   }
 
   // Where jerk is limited, and the run is no run of corners, between which the tube has lines.

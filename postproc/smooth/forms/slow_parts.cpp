@@ -112,10 +112,20 @@ class SlowParts::Search {
   }
 
   // The part, or a wider one that does not begin before `begin`; nothing where the plan is faster.
+  // Timed from rest some moves before the part to rest some behind it.
   [[nodiscard]] std::optional<SlowPart> fastest(SlowPart part, std::size_t begin) const {
+    const std::size_t first = part.first - std::min(part.first, kSlowParts.timed_beside);
+    const std::size_t end = std::min(part.last + 1 + kSlowParts.timed_beside, plan_.moves.size());
+    const std::span<const PlannedMove> all(plan_.moves);
+    const double time = time_of(all.subspan(first, end - first));
     std::optional<SlowPart> best;
     for (std::size_t i = 0; i <= kSlowParts.wider_by; ++i) {
-      part.won = won_by(part);
+      const auto before = all.subspan(first, part.first - first);
+      const auto behind = all.subspan(part.last + 1, end - part.last - 1);
+      std::vector<PlannedMove> moves(before.begin(), before.end());
+      parts_.append_run(plan_, part, moves);
+      moves.insert(moves.end(), behind.begin(), behind.end());
+      part.won = time - time_of(moves);
       if (part.won > (best ? best->won : 0)) best = part;
       if (part.first > begin) --part.first;
       if (part.last + 1 < plan_.moves.size()) ++part.last;
@@ -124,19 +134,6 @@ class SlowParts::Search {
   }
 
  private:
-  // s, from rest some moves before the part to rest some behind it.
-  [[nodiscard]] double won_by(const SlowPart& part) const {
-    const std::size_t first = part.first - std::min(part.first, kSlowParts.timed_beside);
-    const std::size_t end = std::min(part.last + 1 + kSlowParts.timed_beside, plan_.moves.size());
-    const std::span<const PlannedMove> all(plan_.moves);
-    const auto before = all.subspan(first, part.first - first);
-    const auto behind = all.subspan(part.last + 1, end - part.last - 1);
-    std::vector<PlannedMove> moves(before.begin(), before.end());
-    parts_.append_run(plan_, part, moves);
-    moves.insert(moves.end(), behind.begin(), behind.end());
-    return time_of(all.subspan(first, end - first)) - time_of(moves);
-  }
-
   [[nodiscard]] double time_of(std::span<const PlannedMove> moves) const {
     return TimedChain(timed(moves), parts_.machine_).time(parts_.path_, ChainEnd::kStop, kNoPlan);
   }

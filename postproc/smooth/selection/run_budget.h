@@ -11,7 +11,7 @@
 namespace batten::postproc {
 
 struct BudgetTuning {
-  std::uint64_t per_move = 15'000;         // some 0.9 ms
+  std::uint64_t per_move = 12'500;         // some 0.75 ms
   std::size_t least_moves = 50;            // that a run counts as
   std::uint64_t per_program = 30'000'000;  // at least, for all moves of its runs: some 1.8 s
 };

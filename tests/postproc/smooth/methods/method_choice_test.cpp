@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "geometry/path/parameter_samples.h"
@@ -14,6 +15,7 @@
 #include "tests/support/method_cases.h"
 #include "tests/support/naseath_cases.h"
 #include "tests/support/one_run.h"
+#include "tests/support/paths.h"
 #include "tests/support/wavy_programs.h"
 
 namespace batten::postproc {
@@ -316,6 +318,34 @@ TEST(BestMethod, SearchesForNoCornersWhereRoundingThemIsFarFromTheFastest) {
       EXPECT_EQ(std::ranges::find(run.methods, search, &MethodTime::method), run.methods.end());
     }
   }
+}
+
+// LinuxCNC rounds corners itself, within as much: a zigzag gains nothing by any that round them, as
+// its farthest lines show, and their arcs are not made; stairs do.
+TEST(BestMethod, WritesWhatRoundsCornersInFullOnlyWhereItsFarthestLinesWinTime) {
+  struct Made {
+    std::ptrdiff_t lines = 0;
+    std::ptrdiff_t arcs = 0;
+  };
+  const auto made_of = [](const std::vector<geometry::Point3>& points) {
+    std::string text = "G21 G17 G90 G64 P0.01\nG0 X0 Y0 Z0\nF1800\n";
+    for (const geometry::Point3& p : std::span(points).subspan(1)) {
+      text += fmt::format("G1 X{:.3f} Y{:.3f}\n", p.x(), p.y());
+    }
+    const SmoothedRun run = OneRun(text + "G0 Z5\nM2\n").smooth(options_for("linuxcnc"));
+    Made made;
+    for (const Candidate& c : run.candidates) {
+      if (c.method != name_of(Method::kGuo)) continue;
+      ++(c.form == Form::kLines ? made.lines : made.arcs);
+    }
+    return made;
+  };
+  const Made zigzag = made_of(geometry::zigzag_line(30, 0.15, 2));
+  EXPECT_EQ(zigzag.lines, 1);
+  EXPECT_EQ(zigzag.arcs, 0);
+  const Made stairs = made_of(geometry::staircase_path(100, 0.3));
+  EXPECT_GE(stairs.lines, 1);
+  EXPECT_EQ(stairs.arcs, 1);
 }
 
 // --- which methods were tried -------------------------------------------------------------------
