@@ -224,7 +224,7 @@ class CurveForms {
     }
     if (offer.form == Form::kCurves) return plan_curves(run, curve_.path, offer.options);
     if (offer.form == Form::kLines && offer.along == Along::kVertices) {
-      return plan_vertices(run, setting_.meant.fair(), curve_.path, offer.options);
+      return plan_vertices(run, curve_.path, offer.options);
     }
     if (offer.form == Form::kLines) return plan_lines(run, curve_.path, pieces_, offer.options);
     switch (offer.along) {

@@ -98,7 +98,9 @@ class RunSmoother {
           try_corners();
           try_tube();
         }
-        try_vertices(*fair);
+        if (corner_part() >= kBounds.corners && !through_)
+          through_ = curve_by(Method::kFair, roomy);
+        try_vertices(through_ ? *through_ : *fair);
       }
     } else if (const auto curve = curve_by(method, curve_request(method))) {
       find_meant((fair ? *fair : *curve).path, roomy);
@@ -145,8 +147,8 @@ class RunSmoother {
     meant_.emplace(*fair_, is_known ? moves_along(*shape_, run(), *fair_) : MeantPath::Moves());
     facts.off = meant_->distance_of(run());
     if (!is_known && roomy && facts.off > kRun.takes_much / kRun.more_room * roomy->tolerance) {
-      const auto through = curve_by(Method::kFair, *roomy);
-      if (through) fair_ = through->path;
+      through_ = curve_by(Method::kFair, *roomy);
+      if (through_) fair_ = through_->path;
       facts.off = meant_->distance_of(run());
     }
     // A form is printed, and so were the vertices.
@@ -207,7 +209,8 @@ class RunSmoother {
   void try_vertices(const RunCurve& fair) {
     const Form wanted = options().output;
     if (options().linearize || (wanted != Form::kAuto && wanted != Form::kLines)) return;
-    if (!fits_ || !choose(result_, options()).order.empty()) return;
+    if (!fits_) return;
+    if (corner_part() < kBounds.corners && !choose(result_, options()).order.empty()) return;
     const CurvatureProfile bends(fair.path.curve);
     const double left = shares_.smoothing + shares_.form - fair.path.deviation;
     add_vertices({task_, times_, bounds_, *meant_, shape_, budget_},
@@ -332,6 +335,7 @@ class RunSmoother {
   CandidateBounds bounds_;
   RunBudget budget_;
   std::optional<geometry::SmoothCurve> fair_;
+  std::optional<RunCurve> through_;
   std::optional<MeantPath> meant_;
   std::optional<LineArcs> shape_;
   bool is_first_ = true;  // the next curve that candidates are made of

@@ -122,8 +122,7 @@ inline constexpr PlanTuning kPlans;
 // as much outside of the bends of `meant` as inside (geometry::balanced_chords). As many lines as
 // the run has, each no farther than that from its own. `fair`: that `start` of the moves is of. For
 // runs of lines; both curves have one parameter per point.
-[[nodiscard]] OutputPlan plan_vertices(const Run& run, const geometry::SmoothCurve& meant,
-                                       const geometry::SmoothCurve& fair,
+[[nodiscard]] OutputPlan plan_vertices(const Run& run, const geometry::SmoothCurve& fair,
                                        const PlanOptions& options);
 
 // Arcs in a plane that the target takes arcs in and that the run lies in, the active plane first. A

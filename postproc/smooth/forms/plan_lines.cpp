@@ -196,9 +196,9 @@ OutputPlan plan_lines(const Run& run, const geometry::SmoothCurve& fair, const M
   return plan;
 }
 
-OutputPlan plan_vertices(const Run& run, const geometry::SmoothCurve& meant,
-                         const geometry::SmoothCurve& fair, const PlanOptions& options) {
-  Vertices places = geometry::nearest_chords(meant.curve, meant.vertex_parameters);
+OutputPlan plan_vertices(const Run& run, const geometry::SmoothCurve& fair,
+                         const PlanOptions& options) {
+  Vertices places = geometry::nearest_chords(fair.curve, fair.vertex_parameters);
   places.front().place = run.points.front();
   places.back().place = run.points.back();
   for (std::size_t i = 1; i + 1 < places.size(); ++i) {
