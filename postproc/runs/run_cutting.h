@@ -25,6 +25,11 @@ struct CuttingOptions {
   std::size_t longest = 400;  // in a piece, but where it cannot be cut
 };
 
+// Whether it makes more than two pieces.
+[[nodiscard]] inline bool is_long(const Run& run) {
+  return run.points.size() > 2 * CuttingOptions{}.longest;
+}
+
 // The vertices at which a run is cut, increasing, neither its first nor its last: where a cut
 // costs least (Fitness); never within an arc, nor before one that takes its G2 or G3 from the block
 // before it. Linear cost; they depend on the path alone.

@@ -33,6 +33,9 @@ namespace {
 // most.
 constexpr std::size_t kNeighbours = 100;
 
+// Of the blocks that there were: more lines than these for a long run are little.
+constexpr double kMostBlocks = 0.7;
+
 RunContext context_of(const gcode::Program& program, const gcode::Interpretation& meaning,
                       const Section& section) {
   const auto state_after = [&](std::uint32_t block) -> const gcode::ModalState& {
@@ -287,17 +290,22 @@ class PartSmoother {
     return runs;
   }
 
-  // Whether no form but its own vertices will do, and these are not half as far off.
-  static bool has_little(const RunState& work) {
+  // Whether parts of it may do better: no form but its own vertices will do, and these are not half
+  // as far off; or of a long run lines alone, which are most of the blocks that there were.
+  [[nodiscard]] bool has_little(const RunState& work) const {
     const Candidate* chosen = work.chosen();
-    return chosen != nullptr && chosen->has_vertices &&
-           chosen->figures.distance >
-               kCost.half_as_far * work.smoothed.facts.scale.original.distance;
+    if (chosen == nullptr || chosen->form != Form::kLines) return false;
+    const Figures& before = work.smoothed.facts.scale.original;
+    if (chosen->has_vertices) {
+      return chosen->figures.distance > kCost.half_as_far * before.distance;
+    }
+    return options_.output == Form::kAuto && is_long(run_of(work)) &&
+           chosen->figures.blocks > kMostBlocks * before.blocks;
   }
 
   // Whether something speaks against forms of the run as a whole that may be true of a part of it
   // only.
-  static bool disappoints(const RunState& work) {
+  [[nodiscard]] bool disappoints(const RunState& work) const {
     const std::string_view kept = work.selection.reason;
     return has_little(work) || is_rejected_by_proof(work) || kept == gcode::reason::kNoGain ||
            kept == gcode::reason::kSlower || kept == gcode::reason::kLarger ||

@@ -429,8 +429,7 @@ class Prover {
   // is cut at once.
   void reject(RunState& work, std::string_view why) {
     const Run& run = std::get<Run>(runs_.sections[work.section].content);
-    const bool is_long = !work.cut_run && run.points.size() > 2 * CuttingOptions{}.longest;
-    if (is_long && why == gcode::reason::kNotProved) {
+    if (!work.cut_run && is_long(run) && why == gcode::reason::kNotProved) {
       work.give_up(why);
     } else {
       work.reject(why);

@@ -81,13 +81,15 @@ struct PlanOptions {
 // Parts are of max_deviation unless said otherwise.
 struct PlanTuning {
   // Lines.
-  double coarser = 4;           // the next fineness that is tried: chords twice as long
-  double balanced = 1.45;       // so much higher balanced chords may be: two thirds of it are left
-  double least_room = 0.3;      // where the curve comes near to the limit: the proof decides
-  double height_step = 0.8;     // from one height to the next lower one
-  double coarser_again = 1.05;  // at least, where chords are still too many
-  int counted_gates = 8;        // along a link, where links are but counted
-  double periods = 1.1;         // block periods, with which the control just holds the feed
+  double coarser = 4;            // the next fineness that is tried: chords twice as long
+  double balanced = 1.45;        // so much higher balanced chords may be: two thirds of it are left
+  double least_room = 0.3;       // where the curve comes near to the limit: the proof decides
+  double height_step = 0.8;      // from one height to the next lower one
+  int cut_again = 3;             // so often, at most, are chords cut that leave a vertex too far,
+  double cut_beside_ends = 0.1;  // by no less than this part of them
+  double coarser_again = 1.05;   // at least, where chords are still too many
+  int counted_gates = 8;         // along a link, where links are but counted
+  double periods = 1.1;          // block periods, with which the control just holds the feed
   // Arcs. There are few that the target refuses: too tight, too short.
   double arc_chords = 0.1;      // kept for chords in their place
   double spline_chords = 0.03;  // the same where they are refused after rounding only

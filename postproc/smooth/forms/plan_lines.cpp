@@ -122,8 +122,43 @@ std::vector<ChordSection> chord_sections(const geometry::SmoothCurve& fair,
   return sections;
 }
 
+// Balanced chords between these parameters. Where bends alternate a chord keeps more of its height
+// than the others: beside a vertex of the run that is farther from it than the tolerance it gets a
+// vertex of its own.
+Vertices chords_beside(const Run& run, const geometry::SmoothCurve& fair,
+                       std::vector<double> parameters, double tolerance) {
+  const std::vector<double>& at = fair.vertex_parameters;
+  for (int round = 0;; ++round) {
+    Vertices vertices = geometry::balanced_chords(fair.curve, parameters);
+    if (!(tolerance > 0) || round == kPlans.cut_again) return vertices;
+    const auto is_near = [&](std::size_t chord, const geometry::Point3& place) {
+      return chord + 1 < vertices.size() &&
+             geometry::distance_to_segment(place, vertices[chord].place,
+                                           vertices[chord + 1].place) <= tolerance;
+    };
+    std::vector<double> cut;
+    auto k = static_cast<std::size_t>(std::ranges::lower_bound(at, parameters[0]) - at.begin());
+    for (std::size_t i = 0; i + 1 < parameters.size(); ++i) {
+      cut.push_back(parameters[i]);
+      const double least = kPlans.cut_beside_ends * (parameters[i + 1] - parameters[i]);
+      for (; k < at.size() && at[k] < parameters[i + 1]; ++k) {
+        const geometry::Point3& place = run.points[k];
+        if (is_near(i, place) || (i > 0 && is_near(i - 1, place)) || is_near(i + 1, place)) {
+          continue;
+        }
+        const double there =
+            std::min(std::max(at[k], cut.back() + least), parameters[i + 1] - least);
+        if (there >= cut.back() + least) cut.push_back(there);
+      }
+    }
+    cut.push_back(parameters.back());
+    if (cut.size() == parameters.size()) return vertices;
+    parameters = std::move(cut);
+  }
+}
+
 // `used_chords` is set where equal steps would have been too many.
-Vertices vertices_on(const geometry::SmoothCurve& fair, const MarkedPieces& pieces,
+Vertices vertices_on(const Run& run, const geometry::SmoothCurve& fair, const MarkedPieces& pieces,
                      const FeedSection& section, const PlanOptions& options, double height,
                      bool& used_chords) {
   const BsplineCurve& curve = fair.curve;
@@ -154,7 +189,7 @@ Vertices vertices_on(const geometry::SmoothCurve& fair, const MarkedPieces& piec
         chords(pieces, part.from, part.to, fineness_for(section.feed, options, part.height));
     parameters.insert(parameters.end(), some.begin() + 1, some.end());
   }
-  return geometry::balanced_chords(curve, parameters);
+  return chords_beside(run, fair, std::move(parameters), options.tolerance);
 }
 
 OutputPlan lines_of(const Run& run, const geometry::SmoothCurve& fair, const MarkedPieces& pieces,
@@ -164,7 +199,7 @@ OutputPlan lines_of(const Run& run, const geometry::SmoothCurve& fair, const Mar
   geometry::Point3 place = run.points.front();
   for (const FeedSection& section : feed_sections(run, fair)) {
     const Vertices vertices =
-        vertices_on(fair, pieces, section, options, height, plan.chords_for_steps);
+        vertices_on(run, fair, pieces, section, options, height, plan.chords_for_steps);
     for (std::size_t i = 0; i + 1 < vertices.size(); ++i) {
       const bool last = i + 2 == vertices.size() && section.to >= fair.curve.last();
       const geometry::Point3 next = last ? run.points.back() : vertices[i + 1].place;

@@ -59,5 +59,26 @@ TEST(LongRuns, AreCutAtTheSamePlacesWhereNothingIsAsked) {
   }
 }
 
+// A part in space, of which nothing but lines can be made, and one in a plane that is arcs.
+TEST(LongRuns, OfLinesAloneAreCutForPartsThatAreArcs) {
+  std::string text = "G21 G90 G17 G64 P0.01\nG0 X0 Y0 Z0\nF2000\n";
+  for (int i = 1; i <= 700; ++i) {
+    text += fmt::format("G1 X{:.3f} Y{:.3f} Z{:.3f}\n", 0.3 * i, 3 * std::sin(0.1 * i),
+                        2 * std::sin(0.071 * i));
+  }
+  const double x = 210;
+  const double y = 3 * std::sin(70);
+  const double z = 2 * std::sin(0.071 * 700);
+  for (int i = 1; i <= 300; ++i) {
+    const double angle = 0.02 * i;
+    text += fmt::format("G1 X{:.3f} Y{:.3f} Z{:.3f}\n", x + 20 * std::sin(angle),
+                        y + 20 * (1 - std::cos(angle)), z);
+  }
+  const SmoothResult result = smoothed(text + "G0 Z5\nM2\n", options_for("linuxcnc"));
+  EXPECT_TRUE(result.proved);
+  EXPECT_GT(result.text.find("G3"), 0U);
+  EXPECT_NE(result.text.find("G3"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace batten::postproc

@@ -157,6 +157,29 @@ TEST(PlanLines, AreFinerWhereTheCurveLeavesLessOfTheTolerance) {
   EXPECT_LT(there, 0.6 * elsewhere);
 }
 
+// Waves that chords may pass in their middle, and vertices outside of every crest.
+TEST(PlanLines, LeaveNoVertexFartherThanTheTolerance) {
+  constexpr double kHeight = 0.003;
+  constexpr double kOff = 0.0075;
+  constexpr double kTolerance = 0.0097;
+  const auto f = [](double u) { return Point3(u, kHeight * std::sin(2 * geometry::kPi * u), 0); };
+  Smoothed waves = smoothed(geometry::curve_of(f, 0, 20, 400), 81, 1000);
+  for (std::size_t i = 1; i < waves.run.points.size(); i += 2) {
+    waves.run.points[i].y() += i % 4 == 1 ? kOff : -kOff;
+  }
+  waves.fair.edge_deviations.assign(waves.run.points.size() - 1, kOff);
+  const OutputPlan plan = Planning{.max_deviation = 0.0018, .tolerance = kTolerance}.lines(waves);
+  expect_chain(plan, waves.run);
+  for (const Point3& vertex : waves.run.points) {
+    double nearest = 1;
+    for (const PlannedMove& move : plan.moves) {
+      const auto& line = std::get<geometry::Line>(move.piece);
+      nearest = std::min(nearest, geometry::distance_to_segment(vertex, line.start, line.end));
+    }
+    EXPECT_LE(nearest, kTolerance);
+  }
+}
+
 struct Fineness {
   const char* name;
   Planning planning;
@@ -214,7 +237,7 @@ TEST(PlanVertices, AreMovedByNoMoreThanAskedForAndHaveTheirFeeds) {
   for (const double most : {0.02, 0.05, 1.0}) {
     const Machine machine = machine_with(0.001);
     const PlanOptions options = Planning{.max_deviation = most}.options(machine);
-    const OutputPlan plan = plan_vertices(coarse.run, coarse.fair, coarse.fair, options);
+    const OutputPlan plan = plan_vertices(coarse.run, coarse.fair, options);
     ASSERT_EQ(plan.moves.size(), points.size() - 1);
     double farthest = 0;
     for (std::size_t i = 0; i < plan.moves.size(); ++i) {
