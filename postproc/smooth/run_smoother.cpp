@@ -541,6 +541,7 @@ bool is_rejected_by_proof(const RunState& work) {
 
 void RunState::start_again(const Run& run, const SmoothOptions& options) {
   smoothed = smooth_run(run, context, options, CandidateScope::kAll);
+  smoothed.left_out = false;  // where these are rejected, too, nothing else is to be made
   selection = choose(smoothed, options);
   drop_what_is_not_written();
   tried = 0;

@@ -257,5 +257,33 @@ TEST(SmoothRun, SaysThatTheTargetCannot) {
   EXPECT_EQ(kept.reason, gcode::reason::kTargetCannot);
 }
 
+// Four chords, as high as the tolerance, of which only the vertices can be moved.
+TEST(RunSmoother, LeavesNothingOutWhenItStartsAgain) {
+  SmoothOptions options = options_for("grbl");
+  options.prefer = Prefer::kAccuracy;
+  const OneRun run(
+      "G21 G17 G90 G94\nG0 X25.6738 Y28.2651 Z0\nF1000\nG1 X25.5726 Y27.9429\n"
+      "X25.3654 Y27.6826\nX25.0522 Y27.4844\nX24.633 Y27.3482\nG0 Z10\nM30\n");
+  RunState state{0, run.context(), run.smooth(options, CandidateScope::kToChoose)};
+  EXPECT_TRUE(state.smoothed.left_out);
+  state.start_again(run.run(), options);
+  EXPECT_FALSE(state.smoothed.left_out);
+  ASSERT_NE(state.chosen(), nullptr);
+  EXPECT_TRUE(state.chosen()->has_vertices);
+}
+
+// Its numbers are rounded anew, to thousandths: no vertex is so far from its own that this would be
+// more than the tolerance.
+TEST(RunSmoother, MovesVerticesByWhatTheirPrintingLeaves) {
+  SmoothOptions options = options_for("grbl");
+  options.prefer = Prefer::kAccuracy;
+  const SmoothResult result = smoothed(
+      "G21 G17 G90 G94\nG0 X25.6738 Y28.2651 Z5\nG1 Z-0.2 F1000\nG1 X25.5726 Y27.9429\n"
+      "X25.3654 Y27.6826\nX25.0522 Y27.4844\nX24.633 Y27.3482\nG0 Z10\nM30\n",
+      options);
+  EXPECT_TRUE(result.proved);
+  EXPECT_EQ(rewritten_runs(result), 1U);
+}
+
 }  // namespace
 }  // namespace batten::postproc
