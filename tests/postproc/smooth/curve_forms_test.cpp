@@ -266,5 +266,25 @@ TEST(CurveForms, SayHowFarChordsOfACircleAreOffIt) {
   EXPECT_GT(chords, 0U);
 }
 
+// Pixels of 0.1 mm with ramps between them: what rounds each corner takes twice as many blocks.
+TEST(CurveForms, AmongCornersHaveVerticesMovedThatTurnLess) {
+  std::string text = "G21 G90 G17 G64 P0.01\nG0 X0 Y0 Z0\nF1800\n";
+  double x = 0;
+  double z = 0;
+  for (int i = 0; i < 60; ++i) {
+    text += fmt::format("G1 X{:.3f} Z{:.3f}\n", x += 0.1, z += i % 20 < 10 ? 0.1 : -0.1);
+    text += fmt::format("G1 X{:.3f} Z{:.3f}\n", x += 0.1 + 0.1 * (i % 3), z);
+  }
+  const OneRun run(text + "G0 Z5\nM2\n");
+  const SmoothOptions options = options_for("linuxcnc");
+  const SmoothedRun all = run.smooth(options, CandidateScope::kToChoose);
+  const Selection selection = choose(all, options);
+  ASSERT_FALSE(selection.order.empty());
+  const Candidate& chosen = all.candidates[selection.order.front()];
+  EXPECT_TRUE(chosen.has_vertices);
+  EXPECT_LT(chosen.figures.times.programmed, 0.95 * all.facts.scale.original.times.programmed);
+  EXPECT_LE(chosen.figures.blocks, all.facts.scale.original.blocks);
+}
+
 }  // namespace
 }  // namespace batten::postproc
