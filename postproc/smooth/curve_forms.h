@@ -22,7 +22,7 @@ namespace batten::postproc {
 // Adds candidates to `result`, and what it says of those that were not made.
 void add_forms(const FormSetting& setting, const CurveOfRun& curve, SmoothedRun& result);
 
-// The same of lines between the run's own vertices, where `curve` is the first.
+// The same of lines between the run's own vertices, moved to `curve`.
 void add_vertices(const FormSetting& setting, const CurveOfRun& curve, SmoothedRun& result);
 
 }  // namespace batten::postproc

@@ -102,7 +102,7 @@ class FormOffers {
   // In the band around the vertices themselves.
   [[nodiscard]] std::vector<Offer> arc_splines() const;
 
-  // Lines between the run's own vertices. Of the first curve alone, in runs of lines.
+  // Lines between the run's own vertices, moved to the curve. In runs of lines.
   [[nodiscard]] std::vector<Offer> vertices() const;
 
   // Lines along the curve.

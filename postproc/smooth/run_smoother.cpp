@@ -86,7 +86,7 @@ class RunSmoother {
       if (fair) {
         find_meant(fair->path, std::nullopt);
         fits_ = true;
-        try_vertices(*fair);
+        try_vertices(*fair, std::nullopt);
       }
     } else if (method == Method::kBest || method == Method::kFair) {
       if (fair) {
@@ -98,9 +98,7 @@ class RunSmoother {
           try_corners();
           try_tube();
         }
-        if (corner_part() >= kBounds.corners && !through_)
-          through_ = curve_by(Method::kFair, roomy);
-        try_vertices(through_ ? *through_ : *fair);
+        try_vertices(*fair, roomy);
       }
     } else if (const auto curve = curve_by(method, curve_request(method))) {
       find_meant((fair ? *fair : *curve).path, roomy);
@@ -205,16 +203,22 @@ class RunSmoother {
            coarse_part(run(), reach) < kBounds.coarse;
   }
 
-  // Where no form is better than the run: its own vertices, moved.
-  void try_vertices(const RunCurve& fair) {
+  // Its own vertices, moved to `fair`, or to a curve with more room where there is one: where no
+  // form is better than the run; and in runs of corners, which turn less then, to one by `roomy`.
+  void try_vertices(const RunCurve& fair, const std::optional<CurveRequest>& roomy) {
     const Form wanted = options().output;
     if (options().linearize || (wanted != Form::kAuto && wanted != Form::kLines)) return;
     if (!fits_) return;
-    if (corner_part() < kBounds.corners && !choose(result_, options()).order.empty()) return;
-    const CurvatureProfile bends(fair.path.curve);
-    const double left = shares_.smoothing + shares_.form - fair.path.deviation;
+    const bool among_corners = corner_part() >= kBounds.corners;
+    if (!among_corners && !choose(result_, options()).order.empty()) return;
+    if (among_corners && roomy && !through_ && !is_out_of_budget()) {
+      through_ = curve_by(Method::kFair, *roomy);
+    }
+    const RunCurve& along = through_ ? *through_ : fair;
+    const CurvatureProfile bends(along.path.curve);
+    const double left = shares_.smoothing + shares_.form - along.path.deviation;
     add_vertices({task_, times_, bounds_, *meant_, shape_, budget_},
-                 {fair, bends, shares_.form, left}, result_);
+                 {along, bends, shares_.form, left}, result_);
   }
 
   // Where few blocks are wanted: a curve that leaves the vertices by some of the tolerance takes
@@ -335,7 +339,7 @@ class RunSmoother {
   CandidateBounds bounds_;
   RunBudget budget_;
   std::optional<geometry::SmoothCurve> fair_;
-  std::optional<RunCurve> through_;
+  std::optional<RunCurve> through_;  // with more room, where it was fitted beside `fair_`
   std::optional<MeantPath> meant_;
   std::optional<LineArcs> shape_;
   bool is_first_ = true;  // the next curve that candidates are made of

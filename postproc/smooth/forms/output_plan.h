@@ -120,10 +120,9 @@ inline constexpr PlanTuning kPlans;
                                     const geometry::MarkedPieces& pieces,
                                     const PlanOptions& options);
 
-// The run's own vertices, moved, none by more than max_deviation: to where lines between them lie
-// as much outside of the bends of `meant` as inside (geometry::balanced_chords). As many lines as
-// the run has, each no farther than that from its own. `fair`: that `start` of the moves is of. For
-// runs of lines; both curves have one parameter per point.
+// The run's own vertices, moved, none by more than max_deviation: to where lines between them are
+// nearest to the curve (geometry::nearest_chords). As many lines as the run has, each no farther
+// than that from its own. For runs of lines.
 [[nodiscard]] OutputPlan plan_vertices(const Run& run, const geometry::SmoothCurve& fair,
                                        const PlanOptions& options);
 
