@@ -104,9 +104,10 @@ struct SmoothOptions {
   ProfileWords words;    // that a profile adds; its target is `target`
   std::string profile;   // the profile's file, for reports; empty: none
   int threads = 0;       // 0: all cores
-  // Runs of one shape are smoothed once in a part (postproc/smooth/repeated_runs.h). Each by itself
-  // comes out the same to within the rounding of what is computed.
-  bool once_for_repeats = true;
+  // Runs of one shape are smoothed once in a window (postproc/smooth/repeated_runs.h), and some of
+  // many that are alike tell in which forms the others are made (selection/form_record.h). Without,
+  // each comes out as it does alone.
+  bool share_work = true;
   std::vector<double> timed_feeds;  // the program is timed with its feeds so many times, too
   bool quick = false;  // less effort for few moves, all forms from the same curves: for a survey
 };

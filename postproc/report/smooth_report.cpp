@@ -52,7 +52,7 @@ Json json_of(const SmoothOptions& options, bool strict) {
   const auto& [target, machine, tolerance_mm, tolerance_inch, one_tolerance, tolerance_kind, side,
                units, source, decimals, method, output, prefer, guo_lambda, seam, linearize,
                keep_corners_deg, allowed, own_words, subprograms, keep_expressions, convert, words,
-               profile, threads, once_for_repeats, timed_feeds, quick] = options;
+               profile, threads, share_work, timed_feeds, quick] = options;
   Json json = {
       {"target", target->name}, {"machine", machine->name}, {"tolerance_mm", tolerance_mm}};
   if (tolerance_inch) json["tolerance_inch"] = *tolerance_inch;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <span>
 #include <utility>
@@ -17,14 +18,15 @@ namespace batten::postproc {
 std::optional<Candidate> make_candidate(const RunTask& task, const RunTimes& times,
                                         const OutputPlan& plan, const RunFacts& facts,
                                         std::span<const Candidate> there) {
-  const auto& [run, context, options, scope, memo] = task;
+  const RunContext& context = task.context;
+  const SmoothOptions& options = task.options;
   gcode::ModalState before = context.before;
   if (!options.words.before_run.empty()) {  // after words of a profile it says motion and feed
     before.motion = gcode::MotionMode::kUnknown;
     before.feed.reset();
   }
   geometry::count_operations(100 * plan.moves.size());
-  auto text = write_run(plan, run, context.program, *options.target, before, context.after,
+  auto text = write_run(plan, task.run, context.program, *options.target, before, context.after,
                         context.line_end);
   if (!text) return std::nullopt;
   if (context.numbers.first) {
@@ -46,7 +48,7 @@ std::optional<Candidate> make_candidate(const RunTask& task, const RunTimes& tim
   figures.bytes = static_cast<double>(text->text.size());
   figures.roughness = roughness_of(moves);
   candidate.text = std::move(*text);
-  if (context.is_piece() || memo != nullptr) candidate.moves = std::move(moves);
+  if (context.is_piece() || task.memo != nullptr) candidate.moves = std::move(moves);
   return candidate;
 }
 
@@ -60,6 +62,7 @@ class CurveForms {
         curve_(given.curve),
         bends_(given.bends),
         share_(given.share),
+        role_(given.role),
         pieces_(curve_.path.curve),
         offers_(setting, given, result.facts, pieces_),
         by_lines_(given.for_time && setting.task.options.output == Form::kAuto &&
@@ -70,14 +73,26 @@ class CurveForms {
   void add() {
     const Form wanted = task_.options.output;
     if (by_lines_) return add_fastest();
-    make_best(offers_.curves());
-    if (wanted == Form::kCurves && has_form(Form::kCurves)) return;
-    if (wanted != Form::kLines) {
-      make_best(offers_.line_arcs());
-      make_best(offers_.arcs());
-      make_best(offers_.arc_splines());
+    std::vector<Offer> offers = offers_.curves();
+    if (wanted == Form::kCurves) {
+      make_best(std::move(offers));
+      if (has_form(Form::kCurves)) return;
+      offers.clear();
     }
-    if (wanted != Form::kArcs) add_lines();
+    const auto append = [&](std::vector<Offer> more) {
+      std::ranges::move(more, std::back_inserter(offers));
+    };
+    if (wanted != Form::kLines) {
+      append(offers_.line_arcs());
+      append(offers_.arcs());
+      append(offers_.arc_splines());
+    }
+    const auto named = task_.options.linearize;
+    const bool chords = !named || *named == Linearize::kChord;
+    if (wanted != Form::kArcs && chords) append(offers_.chords());
+    make_best(std::move(offers));
+    const bool links = linearize_of(task_.options) == Linearize::kMinLink;
+    if (wanted != Form::kArcs && (links || !chords)) add_named_lines();
   }
 
   void add_vertices() { make_best(offers_.vertices()); }
@@ -100,6 +115,8 @@ class CurveForms {
   // is faster only where these win some.
   void add_fastest() {
     std::vector<Offer> chords = offers_.chords();
+    key_ = {role_, Form::kLines, Along::kCurve, 0};
+    result_.tried.push_back({key_});
     if (auto lines = made(chords.back())) {
       const double before = facts().scale.original.times.programmed;
       const double time = lines->figures.times.programmed;
@@ -110,10 +127,30 @@ class CurveForms {
     if (chords.size() > 1) make_best({chords.front()});
   }
 
-  // In the order in which they are offered, but for those that what there is then beats.
-  void make_best(std::vector<Offer> offers) {
+  // In the order in which they are offered, or of what they are predicted to cost, but for those
+  // that what there is then beats. `place`: of the first of a kind (FormKey).
+  void make_best(std::vector<Offer> offers, std::uint8_t place = 0) {
     const bool all = task_.scope == CandidateScope::kAll;
-    for (Offer& offer : offers) {
+    std::vector<TriedForm> forms;
+    for (std::size_t i = 0; i < offers.size(); ++i) {
+      const Offer& offer = offers[i];
+      const bool another =
+          i > 0 && offers[i - 1].form == offer.form && offers[i - 1].along == offer.along;
+      const auto at = static_cast<std::uint8_t>(another ? forms.back().key.place + 1 : place);
+      forms.push_back(
+          {{role_, offer.form, offer.along, at}, offer.blocks / facts().scale.original.blocks});
+    }
+    for (std::size_t left = offers.size(); left > 0; --left) {
+      const std::size_t next = next_of(forms);
+      if (next == forms.size()) {
+        result_.left_out = true;
+        break;
+      }
+      Offer offer = std::move(offers[next]);
+      const TriedForm form = forms[next];
+      offers.erase(offers.begin() + static_cast<std::ptrdiff_t>(next));
+      forms.erase(forms.begin() + static_cast<std::ptrdiff_t>(next));
+      key_ = form.key;
       if (!all && setting_.bounds.is_beaten(offer.form, offer.blocks, offer.distance)) {
         result_.left_out = true;
         continue;
@@ -127,6 +164,7 @@ class CurveForms {
       }
       last_plan_.reset();
       mended_.reset();
+      result_.tried.push_back(form);
       auto candidate = made(offer);
       const bool limited = offer.options.most_arcs < PlanOptions().most_arcs;
       if (candidate) {
@@ -136,6 +174,24 @@ class CurveForms {
         result_.left_out = true;  // there may be more arcs than these
       }
     }
+  }
+
+  // The form that is to be made next, or none: where like runs are known the one that is predicted
+  // to cost least, if that is less than what there is. Those that are not known come last.
+  [[nodiscard]] std::size_t next_of(const std::vector<TriedForm>& forms) const {
+    if (task_.record == nullptr || by_lines_) return 0;
+    const auto [best, cost] = best_so_far(result_, task_.options);
+    std::size_t next = forms.size();
+    std::size_t unknown = forms.size();
+    double least = cost;
+    for (std::size_t i = 0; i < forms.size(); ++i) {
+      const auto predicted = task_.record->predicted(forms[i], best, cost);
+      if (!predicted) unknown = std::min(unknown, i);
+      if (!predicted || *predicted >= least) continue;
+      least = *predicted;
+      next = i;
+    }
+    return next < forms.size() ? next : unknown;
   }
 
   // The last candidate again, with the run where it is slower: at its ends, or else everywhere, and
@@ -245,6 +301,7 @@ class CurveForms {
     auto candidate = make_candidate(task_, setting_.times, *plan, facts(), result_.candidates);
     if (!candidate) return std::nullopt;
     candidate->method = name_of(curve_.method);
+    candidate->key = key_;
     candidate->max_curvature = bends_.greatest();
     candidate->has_vertices = offer.form == Form::kLines && offer.along == Along::kVertices;
     candidate->rounds_seam = curve_.path.rounds_seam && offer.along == Along::kCurve;
@@ -254,17 +311,11 @@ class CurveForms {
     return candidate;
   }
 
-  void add_lines() {
-    const auto named = task_.options.linearize;
-    if (!named || *named == Linearize::kChord) make_best(offers_.chords());
-    const bool links = linearize_of(task_.options) == Linearize::kMinLink;
-    if (links || (named && *named != Linearize::kChord)) add_named_lines();
-  }
-
   // The farthest first, one by one: of nearer ones there are no fewer.
   void add_named_lines() {
     double before = 0;
     double fewest = 0;
+    std::uint8_t place = 0;
     for (const double multiple : kFormTuning.named_chords) {
       const PlanOptions plan = offers_.within(multiple * share_);
       if (before > 0 && plan.max_deviation > kFormTuning.another * before) continue;
@@ -273,7 +324,7 @@ class CurveForms {
       if (!setting_.bounds.is_beaten(Form::kLines, fewest, 0)) {
         fewest = std::max(fewest, kFormTuning.counted_links * links_about(plan));
       }
-      make_best({{Form::kLines, fewest, 0, plan}});
+      make_best({{Form::kLines, fewest, 0, plan}}, place++);
     }
   }
 
@@ -291,11 +342,13 @@ class CurveForms {
   const RunCurve& curve_;
   const CurvatureProfile& bends_;
   double share_;
+  CurveRole role_;
   geometry::MarkedPieces pieces_;
   FormOffers offers_;
   bool by_lines_;  // whether it wins time is told by its farthest lines
   SmoothedRun& result_;
   std::size_t first_;  // candidate of this curve
+  FormKey key_;        // of the offer that is being made
   std::optional<SlowParts> slow_parts_;
   // Of the offer that was made last.
   std::optional<OutputPlan> last_plan_;

@@ -28,8 +28,9 @@ bool FormOffers::curves_wanted() const {
          (options.output == Form::kAuto && options.target->curves_in_auto);
 }
 
-bool FormOffers::is_first_fair() const {
-  return given_.is_first && given_.curve.method == Method::kFair;
+bool FormOffers::is_fair_as_meant() const {
+  const bool meant = given_.role == CurveRole::kFirst || given_.role == CurveRole::kVertices;
+  return meant && given_.curve.method == Method::kFair;
 }
 
 double FormOffers::distance_before() const { return std::max(facts_.off, facts_.scale.near); }
@@ -37,7 +38,8 @@ double FormOffers::distance_before() const { return std::max(facts_.off, facts_.
 double FormOffers::far() const { return std::min(given_.left, kFormTuning.far * given_.share); }
 
 PlanOptions FormOffers::within(double deviation) const {
-  const auto& [run, context, options, scope, memo] = task_;
+  const RunContext& context = task_.context;
+  const SmoothOptions& options = task_.options;
   PlanOptions plan;
   plan.target = options.target;
   plan.machine = options.machine;
@@ -115,7 +117,7 @@ std::vector<Offer> FormOffers::arcs() const {
 }
 
 std::vector<Offer> FormOffers::line_arcs() const {
-  if (!is_first_fair() || one_sided_ || !setting_.shape) return {};
+  if (!is_fair_as_meant() || one_sided_ || !setting_.shape) return {};
   const double whole = given_.left + given_.curve.path.deviation;
   return {{Form::kArcs, 0, 0, arcs_within(whole, whole), Along::kVertices}};
 }
@@ -126,7 +128,7 @@ std::vector<Offer> FormOffers::arc_splines() const {
   std::vector<Offer> offers;
   const bool cut = task_.options.target->chords.any();  // arcs along the curve have less room
   const bool few = wants_few_moves(task_.options);
-  if (!is_first_fair() || one_sided_) return {};
+  if (!is_fair_as_meant() || one_sided_) return {};
   if (!few && !cut && task_.run.bends.empty()) return {};
   const double whole = given_.left + given_.curve.path.deviation;
   for (const double part : kFormTuning.bands) {
@@ -142,7 +144,7 @@ std::vector<Offer> FormOffers::arc_splines() const {
 }
 
 std::vector<Offer> FormOffers::vertices() const {
-  if (!is_first_fair() || one_sided_ || !task_.run.bends.empty()) return {};
+  if (!is_fair_as_meant() || one_sided_ || !task_.run.bends.empty()) return {};
   if (facts_.off <= kFormTuning.over_printed * facts_.scale.printed) return {};
   PlanOptions plan = within(given_.left);
   // What is printed may be off by half a step in each of three coordinates, three times its rms.

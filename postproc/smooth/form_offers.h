@@ -62,9 +62,9 @@ struct FormSetting {
 struct CurveOfRun {
   const RunCurve& curve;
   const CurvatureProfile& bends;
-  double share = 0;      // mm, of the tolerance: the form's
-  double left = 0;       // mm, what the curve leaves of the tolerance
-  bool is_first = true;  // of the run: the path that was meant, or what was asked for by name
+  double share = 0;  // mm, of the tolerance: the form's
+  double left = 0;   // mm, what the curve leaves of the tolerance
+  CurveRole role = CurveRole::kFirst;
   // There to win time alone: where its farthest lines win next to none, no other form of it is
   // made.
   bool for_time = false;
@@ -112,7 +112,7 @@ class FormOffers {
   [[nodiscard]] PlanOptions within(double deviation) const;
 
  private:
-  [[nodiscard]] bool is_first_fair() const;
+  [[nodiscard]] bool is_fair_as_meant() const;
   [[nodiscard]] double distance_before() const;
   [[nodiscard]] double far() const;
   [[nodiscard]] PlanOptions arcs_within(double deviation, double whole) const;

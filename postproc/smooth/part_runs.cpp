@@ -36,6 +36,15 @@ constexpr std::size_t kNeighbours = 100;
 // Of the blocks that there were: more lines than these for a long run are little.
 constexpr double kMostBlocks = 0.7;
 
+// Pieces of a long run that tell whether it is better cut: so few that little is lost where it is
+// not. Where they take more blocks than this part of those that there were, cuts cost next to none.
+struct SampledPieces {
+  std::size_t pieces = 3;
+  std::size_t of_pieces = 20;  // at least
+  double blocks = 0.35;
+};
+constexpr SampledPieces kSampled;
+
 RunContext context_of(const gcode::Program& program, const gcode::Interpretation& meaning,
                       const Section& section) {
   const auto state_after = [&](std::uint32_t block) -> const gcode::ModalState& {
@@ -181,23 +190,29 @@ class PartSmoother {
 
   // False: the work was stopped.
   bool run() {
-    std::vector<std::size_t> whole;
-    for (std::size_t i = 0; i < runs_.works.size(); ++i) {
-      if (runs_.works[i].selection.reason.empty()) whole.push_back(i);
-    }
     if (options_.method != Method::kNone && memos_ == nullptr) {
       note_bands();  // they warn of what new paths may do
     }
-    if (!smooth_works(whole) || !cut_what_disappoints()) return false;
+    const std::vector<bool> are_better_cut = better_cut();
+    cut_runs([&](std::size_t i) { return are_better_cut[i]; });
+    std::vector<std::size_t> whole;
+    for (std::size_t i = 0; i < runs_.works.size(); ++i) {
+      const RunState& work = runs_.works[i];
+      if (!work.cut_run && work.selection.reason.empty()) whole.push_back(i);
+    }
+    if (!smooth_works(whole) || !cut_what_disappoints(0)) return false;
     if (!part_.window) revert_growth(runs_.works, runs_.cut_runs, options_);
     return true;
   }
 
-  // Replaces runs that would be kept as a whole by pieces: their parts differ. False: the work was
-  // stopped.
-  bool cut_what_disappoints() {
-    const std::size_t cut_before = runs_.cut_runs.size();
-    const std::vector<std::size_t> pieces = cut_runs();
+  // Replaces runs that would be kept as a whole by pieces: their parts differ. These are smoothed,
+  // as are those of runs that were cut before, from this one on. False: the work was stopped.
+  bool cut_what_disappoints(std::size_t cut_before) {
+    cut_runs([this](std::size_t i) { return disappoints(runs_.works[i]); });
+    std::vector<std::size_t> pieces;
+    for (std::size_t i = 0; i < runs_.works.size(); ++i) {
+      if (runs_.works[i].cut_run && *runs_.works[i].cut_run >= cut_before) pieces.push_back(i);
+    }
     if (!smooth_works(pieces)) return false;
     for (std::size_t i = cut_before; i < runs_.cut_runs.size(); ++i) {
       revert_costly_pieces(runs_.cut_runs[i], runs_.works, options_);
@@ -223,8 +238,8 @@ class PartSmoother {
   bool smooth_works(const std::vector<std::size_t>& works) {
     std::vector<std::size_t> firsts(works.size());
     std::iota(firsts.begin(), firsts.end(), std::size_t{0});
-    const bool once = options_.once_for_repeats && memos_ == nullptr;
-    if (once) firsts = firsts_of_shapes(in_context(works), options_);
+    if (options_.share_work && memos_ == nullptr)
+      firsts = firsts_of_shapes(in_context(works), options_);
     std::vector<bool> is_repeated(works.size());
     std::vector<std::size_t> shapes;
     std::vector<std::size_t> repeats;
@@ -233,15 +248,31 @@ class PartSmoother {
       if (firsts[i] != i) is_repeated[firsts[i]] = true;
     }
     std::atomic<bool> stopped = false;
-    parallel_for(options_.threads, shapes.size(), [&](std::size_t i) {
+    const auto smooth = [&](std::size_t i, const FormRecord* record) {
       if (stopped) return;
-      RunState& work = runs_.works[works[shapes[i]]];
+      RunState& work = runs_.works[works[i]];
       RunMemo* memo = memos_ != nullptr ? &memos_->of(runs_.sections[work.section]) : nullptr;
-      const auto scope =
-          is_repeated[shapes[i]] ? CandidateScope::kToRepeat : CandidateScope::kToChoose;
-      work.smoothed = smooth_run(run_of(work), work.context, options_, scope, memo);
-      if (!is_repeated[shapes[i]]) choose_for(work);
+      const auto scope = is_repeated[i] ? CandidateScope::kToRepeat : CandidateScope::kToChoose;
+      work.smoothed = smooth_run(run_of(work), work.context, options_, scope, memo, record);
+      if (!is_repeated[i]) choose_for(work);
       if (!has_smoothed(work)) stopped = true;
+    };
+    std::vector<LikeRuns> kinds = like_runs(works, shapes);
+    std::vector<std::size_t> in_full;
+    std::vector<std::pair<std::size_t, const LikeRuns*>> others;
+    for (const LikeRuns& kind : kinds) {
+      in_full.insert(in_full.end(), kind.in_full.begin(), kind.in_full.end());
+      for (const std::size_t i : kind.others) others.emplace_back(i, &kind);
+    }
+    parallel_for(options_.threads, in_full.size(),
+                 [&](std::size_t i) { smooth(in_full[i], nullptr); });
+    for (LikeRuns& kind : kinds) learn(works, kind);
+    parallel_for(options_.threads, others.size(), [&](std::size_t i) {
+      const auto& [other, kind] = others[i];
+      smooth(other, &kind->record);
+      RunState& work = runs_.works[works[other]];
+      work.outlook.others =
+          kind->outlook_of_block.others * work.smoothed.facts.scale.original.blocks;
     });
     parallel_for(options_.threads, repeats.size(), [&](std::size_t i) {
       if (stopped) return;
@@ -260,6 +291,51 @@ class PartSmoother {
       if (is_repeated[i]) choose_for(runs_.works[works[i]]);
     }
     return !stopped;
+  }
+
+  // Runs of corners, or others. Some of them are smoothed in full; the others in the forms that
+  // these show to be worth it (postproc/smooth/selection/form_record.h).
+  struct LikeRuns {
+    std::vector<std::size_t> in_full = {};
+    std::vector<std::size_t> others = {};
+    FormRecord record = {};
+    Outlook outlook_of_block = {};  // of those in full, on average
+  };
+
+  // Of `works` those that `shapes` lists: all in full where a method or all settings are asked for.
+  [[nodiscard]] std::vector<LikeRuns> like_runs(const std::vector<std::size_t>& works,
+                                                const std::vector<std::size_t>& shapes) const {
+    const bool named = options_.method != Method::kBest || memos_ != nullptr;
+    if (named || !options_.share_work) return {{.in_full = shapes}};
+    std::vector<std::size_t> alike[2];
+    for (const std::size_t i : shapes) {
+      const Run& run = run_of(runs_.works[works[i]]);
+      const double coarse = coarse_part(run, tolerance_of(run, options_.tolerance_mm));
+      alike[coarse >= kBounds.corners ? 1 : 0].push_back(i);
+    }
+    std::vector<LikeRuns> kinds(std::size(alike));
+    for (std::size_t k = 0; k < kinds.size(); ++k) {
+      std::vector<bool> is_full(alike[k].size());
+      for (const std::size_t place : runs_in_full(alike[k].size())) is_full[place] = true;
+      for (std::size_t i = 0; i < alike[k].size(); ++i) {
+        (is_full[i] ? kinds[k].in_full : kinds[k].others).push_back(alike[k][i]);
+      }
+    }
+    return kinds;
+  }
+
+  void learn(const std::vector<std::size_t>& works, LikeRuns& kind) const {
+    if (kind.others.empty()) return;
+    double blocks = 0;
+    for (const std::size_t i : kind.in_full) {
+      const RunState& work = runs_.works[works[i]];
+      kind.record.add(work.smoothed.facts.scale.original.blocks,
+                      outcomes_of(work.smoothed, options_));
+      kind.outlook_of_block += work.outlook;
+      blocks += work.smoothed.facts.scale.original.blocks;
+    }
+    kind.outlook_of_block.others /= std::max(1.0, blocks);
+    kind.record.learn(weights_of(options_.prefer).size);
   }
 
   void choose_for(RunState& work) {
@@ -312,16 +388,52 @@ class PartSmoother {
            kept == gcode::reason::kFarther || kept == gcode::reason::kNoFit;
   }
 
-  // Returns the works that are new.
-  std::vector<std::size_t> cut_runs() {
-    std::vector<std::size_t> fresh;
+  // For each work whether it is a long run of which some pieces take many blocks, too: then it is
+  // cut at once, since as a whole it would hardly take fewer.
+  [[nodiscard]] std::vector<bool> better_cut() const {
+    std::vector<bool> is_better(runs_.works.size());
+    if (options_.output != Form::kAuto || options_.method != Method::kBest || memos_ != nullptr) {
+      return is_better;
+    }
+    std::vector<std::pair<std::size_t, RunPiece>> samples;
+    for (std::size_t i = 0; i < runs_.works.size(); ++i) {
+      const RunState& work = runs_.works[i];
+      if (!work.selection.reason.empty() || !is_long(run_of(work))) continue;
+      std::vector<RunPiece> pieces = cut_run(runs_.sections[work.section], part_.meaning, {});
+      if (pieces.size() < kSampled.of_pieces) continue;
+      for (std::size_t k = 0; k < kSampled.pieces; ++k) {
+        const std::size_t place = (2 * k + 1) * pieces.size() / (2 * kSampled.pieces);
+        samples.emplace_back(i, std::move(pieces[place]));
+      }
+    }
+    std::vector<double> more(samples.size());  // blocks, than a run has that is no better cut
+    parallel_for(options_.threads, samples.size(), [&](std::size_t i) {
+      const auto& [work, piece] = samples[i];
+      RunState state = state_of(piece, run_of(runs_.works[work]));
+      const Run& run = std::get<Run>(piece.section.content);
+      state.smoothed = smooth_run(run, state.context, options_);
+      state.selection = choose(state.smoothed, options_);
+      const double before = state.smoothed.facts.scale.original.blocks;
+      const Candidate* chosen = state.chosen();
+      more[i] = (chosen != nullptr ? chosen->figures.blocks : before) - kSampled.blocks * before;
+    });
+    std::vector<double> of_work(runs_.works.size());
+    for (std::size_t i = 0; i < samples.size(); ++i) of_work[samples[i].first] += more[i];
+    for (std::size_t i = 0; i < of_work.size(); ++i) is_better[i] = of_work[i] > 0;
+    return is_better;
+  }
+
+  void cut_runs(const std::function<bool(std::size_t)>& is_cut) {
     std::vector<Section> sections;
     std::vector<RunState> works;
     std::size_t next = 0;
     for (std::size_t i = 0; i < runs_.sections.size(); ++i) {
       RunState* work = nullptr;
       if (next < runs_.works.size() && runs_.works[next].section == i) work = &runs_.works[next++];
-      if (work != nullptr && add_pieces(*work, sections, works, fresh)) continue;
+      if (work != nullptr && !work->cut_run && is_cut(next - 1) &&
+          add_pieces(*work, sections, works)) {
+        continue;
+      }
       if (work != nullptr) {
         if (work->cut_run && work->first == 0) {
           runs_.cut_runs[*work->cut_run].first_work = works.size();
@@ -333,34 +445,39 @@ class PartSmoother {
     }
     runs_.sections = std::move(sections);
     runs_.works = std::move(works);
-    return fresh;
   }
 
-  bool add_pieces(RunState& work, std::vector<Section>& sections, std::vector<RunState>& works,
-                  std::vector<std::size_t>& fresh) {
-    if (work.cut_run || !disappoints(work)) return false;
+  // Of a piece of `whole`.
+  [[nodiscard]] RunState state_of(const RunPiece& piece, const Run& whole) const {
+    RunState state{0, context_of(part_.program, part_.meaning, piece.section)};
+    state.context.moves_of_program = runs_.moves;
+    state.first = piece.first;
+    state.last = piece.last;
+    const std::size_t from = piece.first - std::min(piece.first, kNeighbours);
+    const std::size_t to = std::min(piece.last + kNeighbours, whole.points.size() - 1);
+    state.context.lead = timed_pieces(whole, from, piece.first);
+    state.context.tail = timed_pieces(whole, piece.last, to);
+    return state;
+  }
+
+  bool add_pieces(RunState& work, std::vector<Section>& sections, std::vector<RunState>& works) {
     std::vector<RunPiece> pieces = cut_run(runs_.sections[work.section], part_.meaning, {});
     if (pieces.size() < 2) return false;
     CutRun cut;
     cut.path = work.context.after.path;
-    cut.facts = work.smoothed.facts;
-    const Selection forms = choose(work.smoothed, options_, Among::kFormsAlone);
-    cut.reason = work.reject_reason.empty() ? forms.reason : work.reject_reason;
-    cut.outlook = std::move(work.outlook);
+    if (work.smoothed.facts.length > 0) {
+      cut.facts = work.smoothed.facts;
+      const Selection forms = choose(work.smoothed, options_, Among::kFormsAlone);
+      cut.reason = work.reject_reason.empty() ? forms.reason : work.reject_reason;
+      cut.outlook = std::move(work.outlook);
+    }
     cut.first_work = works.size();
     cut.pieces = pieces.size();
     cut.run = std::move(std::get<Run>(runs_.sections[work.section].content));
     for (RunPiece& piece : pieces) {
-      fresh.push_back(works.size());
-      RunState part{sections.size(), context_of(part_.program, part_.meaning, piece.section)};
-      part.context.moves_of_program = runs_.moves;
+      RunState part = state_of(piece, cut.run);
+      part.section = sections.size();
       part.cut_run = runs_.cut_runs.size();
-      part.first = piece.first;
-      part.last = piece.last;
-      const std::size_t from = piece.first - std::min(piece.first, kNeighbours);
-      const std::size_t to = std::min(piece.last + kNeighbours, cut.run.points.size() - 1);
-      part.context.lead = timed_pieces(cut.run, from, piece.first);
-      part.context.tail = timed_pieces(cut.run, piece.last, to);
       works.push_back(std::move(part));
       sections.push_back(std::move(piece.section));
     }
@@ -445,7 +562,8 @@ bool smooth_runs(const ProgramPart& part, const SmoothOptions& options,
 
 bool cut_rejected_runs(const ProgramPart& part, const SmoothOptions& options,
                        const ProgressCallback& progress, PartRuns& runs) {
-  return PartSmoother(part, options, progress, runs, nullptr).cut_what_disappoints();
+  return PartSmoother(part, options, progress, runs, nullptr)
+      .cut_what_disappoints(runs.cut_runs.size());
 }
 
 }  // namespace batten::postproc

@@ -91,7 +91,7 @@ class RunSmoother {
     } else if (method == Method::kBest || method == Method::kFair) {
       if (fair) {
         find_meant(fair->path, roomy);
-        add_candidates_of(*fair);
+        add_candidates_of(*fair, CurveRole::kFirst);
         try_simpler(meant);
         try_rounding();
         if (method == Method::kBest) {
@@ -102,7 +102,7 @@ class RunSmoother {
       }
     } else if (const auto curve = curve_by(method, curve_request(method))) {
       find_meant((fair ? *fair : *curve).path, roomy);
-      add_candidates_of(*curve);
+      add_candidates_of(*curve, CurveRole::kFirst);
     }
     if (!fits_) return gcode::reason::kNoFit;
     if (!result_.candidates.empty()) return {};
@@ -172,10 +172,21 @@ class RunSmoother {
     });
   }
 
-  void try_curve(Method method, const CurveRequest& request, bool for_time = false) {
-    if (is_out_of_budget()) return;
+  void try_curve(CurveRole role, Method method, const CurveRequest& request,
+                 bool for_time = false) {
+    if (is_out_of_budget() || is_left_out(role)) return;
     const auto curve = curve_by(method, request);
-    if (curve) add_candidates_of(*curve, for_time);
+    if (curve) add_candidates_of(*curve, role, for_time);
+  }
+
+  // Whether runs like this one show that none of its forms will be better than what there is.
+  bool is_left_out(CurveRole role) {
+    if (task_.record == nullptr) return false;
+    const auto [best, cost] = best_so_far(result_, options());
+    const auto predicted = task_.record->predicted(role, best, cost);
+    if (!predicted || *predicted < cost) return false;
+    result_.left_out = true;
+    return true;
   }
 
   // Whether less is left than what is to be begun takes at least; then the result says so.
@@ -186,14 +197,13 @@ class RunSmoother {
   }
 
   // Where it leaves some of the tolerance.
-  void add_candidates_of(const RunCurve& curve, bool for_time = false) {
+  void add_candidates_of(const RunCurve& curve, CurveRole role, bool for_time = false) {
     const double left = shares_.smoothing + shares_.form - curve.path.deviation;
     if (!(left > 0)) return;
     fits_ = true;
     const CurvatureProfile bends(curve.path.curve);
     add_forms({task_, times_, bounds_, *meant_, shape_, budget_},
-              {curve, bends, shares_.form, left, is_first_, for_time}, result_);
-    is_first_ = false;
+              {curve, bends, shares_.form, left, role, for_time}, result_);
   }
 
   // Whether most chords are so near to a curve that their ends can be moved clearly nearer.
@@ -208,7 +218,7 @@ class RunSmoother {
   void try_vertices(const RunCurve& fair, const std::optional<CurveRequest>& roomy) {
     const Form wanted = options().output;
     if (options().linearize || (wanted != Form::kAuto && wanted != Form::kLines)) return;
-    if (!fits_) return;
+    if (!fits_ || is_left_out(CurveRole::kVertices)) return;
     const bool among_corners = corner_part() >= kBounds.corners;
     if (!among_corners && !choose(result_, options()).order.empty()) return;
     if (among_corners && roomy && !through_ && !is_out_of_budget()) {
@@ -218,7 +228,7 @@ class RunSmoother {
     const CurvatureProfile bends(along.path.curve);
     const double left = shares_.smoothing + shares_.form - along.path.deviation;
     add_vertices({task_, times_, bounds_, *meant_, shape_, budget_},
-                 {along, bends, shares_.form, left}, result_);
+                 {along, bends, shares_.form, left, CurveRole::kVertices}, result_);
   }
 
   // Where few blocks are wanted: a curve that leaves the vertices by some of the tolerance takes
@@ -232,7 +242,7 @@ class RunSmoother {
       request.tolerance = shares_.smoothing + kRun.lent * shares_.form;
       request.scatter = std::max(request.scatter, kRun.spent * request.tolerance);
     }
-    try_curve(Method::kFair, request);
+    try_curve(CurveRole::kSimpler, Method::kFair, request);
   }
 
   // The methods of corners: the quick one where it may win time, and those that search for each
@@ -240,12 +250,12 @@ class RunSmoother {
   void try_corners() {
     if (options().side != geometry::Side::kBoth) return;
     if (!corners_are_worth_trying(corner_part(), bounds_.least_time(), best_time())) return;
-    try_curve(Method::kGuo, curve_request(Method::kGuo), true);
+    try_curve(CurveRole::kCorners, Method::kGuo, curve_request(Method::kGuo), true);
     if (!may_lead_by_corners()) return;
     for (const Method method : {Method::kOzcan, Method::kTimeOptimal}) {
       if (searches_are_worth_trying(run().points.size(), bounds_.least_time(),
                                     result_.facts.scale.alone, best_time())) {
-        try_curve(method, curve_request(method));
+        try_curve(CurveRole::kCorners, method, curve_request(method));
       }
     }
   }
@@ -277,7 +287,7 @@ class RunSmoother {
     const bool all = task_.scope == CandidateScope::kAll || task_.memo != nullptr;
     if (!all) request.rival = best_time();
     if (is_out_of_budget(tube_operations(fair_->curve, request))) return;
-    try_curve(Method::kTube, request);
+    try_curve(CurveRole::kTube, Method::kTube, request);
   }
 
   [[nodiscard]] double corner_part() const {
@@ -318,7 +328,7 @@ class RunSmoother {
     const bool simpler = may_be_simpler(so_far, fewer);
     if (!simpler && !rounding_is_worth_trying(bounds_.least_time(), best_time())) return;
     const bool for_time = !simpler && corner_part() >= kBounds.corners;
-    try_curve(Method::kFair, curve_request(Method::kFair), for_time);
+    try_curve(CurveRole::kRounding, Method::kFair, curve_request(Method::kFair), for_time);
   }
 
   // Where nothing is better so far, a curve of fewer pieces: where few blocks are wanted or the
@@ -342,8 +352,7 @@ class RunSmoother {
   std::optional<RunCurve> through_;  // with more room, where it was fitted beside `fair_`
   std::optional<MeantPath> meant_;
   std::optional<LineArcs> shape_;
-  bool is_first_ = true;  // the next curve that candidates are made of
-  bool fits_ = false;     // a method found a curve inside the tolerance
+  bool fits_ = false;  // a method found a curve inside the tolerance
   SmoothedRun& result_;
 };
 
@@ -404,7 +413,7 @@ WorthAPlan worth_a_plan(const Run& run, const RunContext& context, const SmoothO
 }  // namespace
 
 SmoothedRun smooth_run(const Run& run, const RunContext& context, const SmoothOptions& options,
-                       CandidateScope scope, RunMemo* memo) {
+                       CandidateScope scope, RunMemo* memo, const FormRecord* record) {
   const RunTimes times(context, *options.machine, worth_a_plan(run, context, options));
   SmoothedRun result;
   result.facts = facts_of(run, context, options, times);
@@ -423,7 +432,7 @@ SmoothedRun smooth_run(const Run& run, const RunContext& context, const SmoothOp
     result.reason = gcode::reason::kNoFit;
     return result;
   }
-  const RunTask task{run, context, options, scope, memo};
+  const RunTask task{run, context, options, scope, memo, record};
   result.reason = RunSmoother(task, times, shares, result).smooth();
   return result;
 }

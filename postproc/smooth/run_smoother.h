@@ -17,7 +17,7 @@ namespace batten::postproc {
 [[nodiscard]] SmoothedRun smooth_run(const Run& run, const RunContext& context,
                                      const SmoothOptions& options,
                                      CandidateScope scope = CandidateScope::kToChoose,
-                                     RunMemo* memo = nullptr);
+                                     RunMemo* memo = nullptr, const FormRecord* record = nullptr);
 
 // The same for a repeat of a run that was smoothed with CandidateScope::kToRepeat, `offset` (mm)
 // away (postproc/smooth/repeated_runs.h). Nothing where a candidate of that cannot be said there.

@@ -131,6 +131,7 @@ inline SmoothOptions options_of_seed(unsigned seed) {
   static const std::vector<std::string> kTargets = {"linuxcnc", "fanuc", "grbl", "haas"};
   SmoothOptions options = options_for(kTargets[seed % kTargets.size()]);
   options.threads = 1 + static_cast<int>(seed % 2);
+  options.share_work = false;  // among the runs of a window
   if (seed % 6 != 1) options.method = Method::kFair;
   if (seed % 5 == 2) options.tolerance_kind = geometry::ToleranceKind::kBand;
   if (seed % 7 == 3) options.allowed = {"exact-stop"};

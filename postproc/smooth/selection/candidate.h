@@ -21,6 +21,7 @@
 #include "postproc/smooth/forms/program_writer.h"
 #include "postproc/smooth/methods/run_curve.h"
 #include "postproc/smooth/selection/cost.h"
+#include "postproc/smooth/selection/form_record.h"
 
 namespace batten::postproc {
 
@@ -58,6 +59,7 @@ struct Candidate {
   bool has_vertices = false;            // the run's own, moved: see plan_vertices
   bool rounds_seam = false;             // see geometry::SmoothCurve
   std::vector<TimedPiece> moves;        // of a piece of a run, and in a RunMemo; empty otherwise
+  FormKey key = {};                     // the offer that it was made of
   std::optional<OutputPlan> plan = {};  // where it is asked for (CandidateScope)
 };
 
@@ -78,6 +80,7 @@ struct SmoothedRun {
   std::string_view reason;
   bool left_out = false;  // there are more that the choice would not prefer to the best of these
   bool is_cut_short = false;  // its budget (RunBudget) was spent before all was tried
+  std::vector<TriedForm> tried = {};
 };
 
 // Which candidates are made. Others are of use where the proof of the chosen one fails. Of a run
@@ -116,6 +119,7 @@ struct RunTask {  // all must live as long
   const SmoothOptions& options;
   CandidateScope scope = CandidateScope::kToChoose;
   RunMemo* memo = nullptr;
+  const FormRecord* record = nullptr;  // of like runs; none: nothing is left out by it
 };
 
 // Whether its work is bounded (RunBudget): not of who asks for all that there is, or for a method

@@ -59,7 +59,7 @@ Figures CandidateBounds::least(Form form, double blocks, double distance) const 
 
 // What only rounds corners is no nearer to the path than the lines are.
 bool CandidateBounds::is_hopeless() const {
-  const auto& [run, context, options, scope, memo] = task_;
+  const auto& [run, context, options, scope, memo, record] = task_;
   if (options.prefer == Prefer::kSize || is_forced(options.output, so_far_.facts, options))
     return false;
   if (coarse_part(run, tolerance_of(run, options.tolerance_mm)) < kBounds.coarse) return false;

@@ -118,17 +118,39 @@ Outlook outlook_of(const SmoothedRun& run, const SmoothOptions& options) {
   return outlook;
 }
 
-double cost_to_beat(const SmoothedRun& run, const SmoothOptions& options) {
+BestSoFar best_so_far(const SmoothedRun& run, const SmoothOptions& options) {
   const CostScale& scale = run.facts.scale;
   const bool forced = is_forced(options.output, run.facts, options);
-  double least = forced ? std::numeric_limits<double>::infinity()
-                        : cost_of(scale.original, scale, options.prefer);
+  BestSoFar best;
+  best.cost = forced ? std::numeric_limits<double>::infinity()
+                     : cost_of(scale.original, scale, options.prefer);
   for (const Candidate& c : run.candidates) {
     if (forced && c.form != options.output) continue;
     if (!reason_against(c.figures, c.form, run.facts, options).empty()) continue;
-    least = std::min(least, cost_of(c.figures, scale, options.prefer));
+    const double cost = cost_of(c.figures, scale, options.prefer);
+    if (cost < best.cost) best = {c.key, cost};
   }
-  return least;
+  return best;
+}
+
+double cost_to_beat(const SmoothedRun& run, const SmoothOptions& options) {
+  return best_so_far(run, options).cost;
+}
+
+std::vector<FormRecord::Outcome> outcomes_of(const SmoothedRun& run, const SmoothOptions& options) {
+  const CostScale& scale = run.facts.scale;
+  std::vector<FormRecord::Outcome> outcomes;
+  outcomes.reserve(run.tried.size());
+  for (const TriedForm& tried : run.tried) outcomes.push_back({tried});
+  for (const std::size_t best : choose(run, options).order) {
+    const Candidate& c = run.candidates[best];
+    const auto of = std::ranges::find(outcomes, c.key, [](const auto& o) { return o.tried.key; });
+    if (of == outcomes.end() || of->may_be_written) continue;
+    of->may_be_written = true;
+    of->cost = cost_of(c.figures, scale, options.prefer);
+    of->blocks = c.figures.blocks / scale.original.blocks;
+  }
+  return outcomes;
 }
 
 std::vector<MethodTime> method_times(const SmoothedRun& run) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -51,9 +52,17 @@ struct Outlook {
 
 [[nodiscard]] Outlook outlook_of(const SmoothedRun& run, const SmoothOptions& options);
 
-// The cost that another candidate has to be below: of the best one so far, or of the blocks as they
-// are. Infinite where a form is forced and there is none of it.
+// What another candidate has to be better than: the best one so far, or the blocks as they are.
+struct BestSoFar {
+  std::optional<FormKey> key;  // of a candidate
+  double cost = 0;             // infinite where a form is forced and there is none of it
+};
+[[nodiscard]] BestSoFar best_so_far(const SmoothedRun& run, const SmoothOptions& options);
 [[nodiscard]] double cost_to_beat(const SmoothedRun& run, const SmoothOptions& options);
+
+// What became of the forms that were made, for like runs.
+[[nodiscard]] std::vector<FormRecord::Outcome> outcomes_of(const SmoothedRun& run,
+                                                           const SmoothOptions& options);
 
 struct MethodTime {
   std::string_view method;

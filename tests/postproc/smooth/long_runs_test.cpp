@@ -80,5 +80,49 @@ TEST(LongRuns, OfLinesAloneAreCutForPartsThatAreArcs) {
   EXPECT_NE(result.text.find("G3"), std::string::npos);
 }
 
+PartRuns smoothed_runs(const std::string& text) {
+  gcode::Diagnostics found;
+  gcode::Program program = gcode::parse(gcode::SourceText("long.nc", text), found);
+  gcode::Interpretation meaning = gcode::interpret(program, {}, found);
+  const ProgramPart part{std::move(program), std::move(meaning), {}};
+  const SmoothOptions options = options_for("linuxcnc");
+  PartRuns runs = find_runs(part, options);
+  EXPECT_TRUE(smooth_runs(
+      part, options, [](double) { return true; }, runs));
+  return runs;
+}
+
+// Rows over a rough relief, joined at their ends: no piece of them comes out in few blocks, and
+// nothing is smoothed as a whole before it is cut.
+TEST(LongRuns, OfWhichPiecesTakeManyBlocksAreCutAtOnce) {
+  std::string text = "G21 G90 G17 G64 P0.01\nG0 X0 Y0 Z0\nF2000\n";
+  for (int row = 0; row < 60; ++row) {
+    for (int i = 0; i <= 100; ++i) {
+      const double x = 0.3 * (row % 2 == 0 ? i : 100 - i);
+      const double z =
+          0.4 * std::sin(1.3 * x) * std::cos(0.8 * row) + 0.2 * std::sin(2.9 * x + row);
+      text += fmt::format("G1 X{:.3f} Y{:.3f} Z{:.3f}\n", x, 0.5 * row, z);
+    }
+  }
+  const PartRuns at_once = smoothed_runs(text + "G0 Z5\nM2\n");
+  ASSERT_EQ(at_once.cut_runs.size(), 1U);
+  EXPECT_GE(at_once.cut_runs[0].pieces, 20U);
+  EXPECT_FALSE(at_once.cut_runs[0].facts);
+}
+
+// A circle, which is a few arcs as a whole.
+TEST(LongRuns, OfWhichPiecesTakeFewBlocksStayWhole) {
+  std::string text = "G21 G90 G17 G64 P0.01\nG0 X50 Y0 Z0\nF2000\n";
+  for (int i = 1; i <= 8000; ++i) {
+    const double angle = 2 * geometry::kPi * i / 8000;
+    text += fmt::format("G1 X{:.4f} Y{:.4f}\n", 50 * std::cos(angle), 50 * std::sin(angle));
+  }
+  const PartRuns whole = smoothed_runs(text + "G0 Z5\nM2\n");
+  EXPECT_TRUE(whole.cut_runs.empty());
+  ASSERT_EQ(whole.works.size(), 1U);
+  ASSERT_NE(whole.works[0].chosen(), nullptr);
+  EXPECT_LE(whole.works[0].chosen()->figures.blocks, 10);
+}
+
 }  // namespace
 }  // namespace batten::postproc

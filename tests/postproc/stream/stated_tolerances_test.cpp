@@ -315,7 +315,7 @@ TEST_P(StatedSeed, KeepsInEachPartWhatTheProgramSays) {
 
 TEST_P(StatedSeed, ComesOutAsTheWholeInWindows) {
   SmoothOptions options = options_within(kUsers);
-  options.once_for_repeats = false;
+  options.share_work = false;
   const InWindows windows = in_windows(text_, options, 1);
   EXPECT_GT(windows.parts, 2U);
   expect_same(windows, as_a_whole(text_, options));

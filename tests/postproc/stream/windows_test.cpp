@@ -18,10 +18,10 @@ namespace batten::postproc {
 namespace {
 
 // Returns how many windows there were, as many as `least_blocks` allow.
-// But for runs of one shape: those of a window have their first one in it.
+// But for what the runs of a window share.
 std::size_t compare_both_ways(const std::string& text, SmoothOptions options,
                               std::initializer_list<std::size_t> least_blocks) {
-  options.once_for_repeats = false;
+  options.share_work = false;
   std::size_t most = 0;
   std::optional<SmoothResult> whole;
   for (const std::size_t least : least_blocks) {
