@@ -320,15 +320,21 @@ class RunSmoother {
     const Selection so_far = choose(result_, options(), Among::kFormsAlone);
     const bool fewer = wants_few_moves(options()) || options().target->curves_in_auto;
     if (so_far.reason == gcode::reason::kLarger && !fewer) return;
-    const double left = 1 - bounds_.least_time() / best_time();
-    if (corner_part() >= kBounds.corners && left < kRun.left_at_corners &&
-        !wants_few_moves(options())) {
-      return;
-    }
+    const bool in_corners = corner_part() >= kBounds.corners;
     const bool simpler = may_be_simpler(so_far, fewer);
-    if (!simpler && !rounding_is_worth_trying(bounds_.least_time(), best_time())) return;
-    const bool for_time = !simpler && corner_part() >= kBounds.corners;
+    if (!simpler && !may_be_faster(in_corners)) return;
+    const bool for_time = !simpler && in_corners;
     try_curve(CurveRole::kRounding, Method::kFair, curve_request(Method::kFair), for_time);
+  }
+
+  // By rounding corners. Not in runs of corners on a control that blends them itself, where the
+  // methods of corners win what is left.
+  [[nodiscard]] bool may_be_faster(bool in_corners) const {
+    const double least = bounds_.least_time();
+    if (!rounding_is_worth_trying(least, best_time())) return false;
+    if (!in_corners || wants_few_moves(options())) return true;
+    const bool blends = options().machine->model == ControllerModel::kLinuxcnc;
+    return !blends && 1 - least / best_time() >= kRun.left_at_corners;
   }
 
   // Where nothing is better so far, a curve of fewer pieces: where few blocks are wanted or the
