@@ -116,7 +116,7 @@ class ArcFit {
     }
     Path path;
     for (Chain& chain : chains) {
-      if (chain.greedy) {
+      if (chain.greedy && options_.effort != ArcEffort::kBrief) {
         chain.pieces = balanced(curve_, limits_, chain.start, chain.end, std::move(chain.pieces));
       }
       for (const ChainPiece& piece : chain.pieces) append(piece.arc, piece.end_height, path);

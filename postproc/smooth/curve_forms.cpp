@@ -123,7 +123,9 @@ class CurveForms {
       result_.candidates.push_back(std::move(*lines));
       if (time > (1 - kFormTuning.wins) * before) return;
     }
-    make_best({offers_.arcs().back()});
+    Offer arcs = offers_.arcs().back();
+    arcs.options.arc_effort = geometry::ArcEffort::kBrief;
+    make_best({arcs});
     if (chords.size() > 1) make_best({chords.front()});
   }
 
