@@ -112,10 +112,13 @@ std::string words_of(Allowed allowed, Quantity quantity) {
                      units_of(quantity).front().name);
 }
 
-void check(double value, Allowed allowed, Quantity quantity, std::string key,
+// `key`: a call that makes it. Machines are asked for each time they are used, and hardly ever have
+// a problem.
+template <typename Key>
+void check(double value, Allowed allowed, Quantity quantity, const Key& key,
            std::vector<MachineProblem>& problems) {
   if (is_within(value, allowed)) return;
-  problems.push_back({std::move(key), value, words_of(allowed, quantity)});
+  problems.push_back({key(), value, words_of(allowed, quantity)});
 }
 
 }  // namespace
@@ -165,13 +168,17 @@ std::vector<MachineProblem> problems_of(const Machine& machine) {
     const bool stops = by_deviation && field.place == &Machine::junction_deviation;
     Allowed allowed = field.allowed;
     allowed.zero = allowed.zero && !stops;
-    check(machine.*field.place, allowed, field.quantity, std::string(field.key), problems);
+    check(
+        machine.*field.place, allowed, field.quantity, [&] { return std::string(field.key); },
+        problems);
   }
   for (std::size_t i = 0; i < kAxes; ++i) {
     const auto axis = static_cast<Axis>(i);
     for (const AxisField& field : axis_fields()) {
-      check(machine.axis(axis).*field.place, field.allowed,
-            i < kLinearAxes ? field.linear : field.rotary, axis_key(axis, field), problems);
+      check(
+          machine.axis(axis).*field.place, field.allowed,
+          i < kLinearAxes ? field.linear : field.rotary, [&] { return axis_key(axis, field); },
+          problems);
     }
   }
   if (machine.look_ahead < 1) {

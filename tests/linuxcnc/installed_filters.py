@@ -25,6 +25,7 @@ class Filtered:
     messages: str = ""  # what the user would read in the dialog after an exit code other than 0
     progress: list = dataclasses.field(default_factory=list)
     loaded: bool = False
+    looks: int = 2  # QtVCP's, one each TICK; a filter that is done before the second shows nothing
 
 
 def definitions(file, names, space):
@@ -116,8 +117,10 @@ def qtvcp_call(ini, program, result):
 
     WithoutDialog(axis_filter_for(ini, program), str(program), str(result),
                   lambda code: code or loaded.append(True))
+    told.looks = 0
     while ticks:
         time.sleep(TICK)
+        told.looks += 1
         ticks[0](None)
     told.text, told.progress, told.loaded = result.read_bytes(), seen, bool(loaded)
     return told
