@@ -322,11 +322,16 @@ class CurveForms {
       const PlanOptions plan = offers_.within(multiple * share_);
       if (before > 0 && plan.max_deviation > kFormTuning.another * before) continue;
       before = plan.max_deviation;
+      const std::uint8_t at = place++;
+      if (next_of({{{role_, Form::kLines, Along::kCurve, at}}}) != 0) {
+        result_.left_out = true;
+        continue;
+      }
       fewest = std::max(fewest, kFormTuning.links * bends_.chords(plan.max_deviation, 0));
       if (!setting_.bounds.is_beaten(Form::kLines, fewest, 0)) {
         fewest = std::max(fewest, kFormTuning.counted_links * links_about(plan));
       }
-      make_best({{Form::kLines, fewest, 0, plan}}, place++);
+      make_best({{Form::kLines, fewest, 0, plan}}, at);
     }
   }
 
