@@ -14,6 +14,7 @@
 #include "geometry/path/path.h"
 #include "postproc/proof/program_events.h"
 #include "postproc/proof/self_meeting.h"
+#include "postproc/system/parallel_for.h"
 
 namespace batten::postproc {
 
@@ -242,11 +243,12 @@ std::optional<std::pair<std::uint32_t, std::uint32_t>> last_common_position(
 class TextVerifier {
  public:
   TextVerifier(const TextToVerify& before, const TextToVerify& after, const Promise& promise,
-               const VerifyLimits& limits, bool as_whole)
+               const VerifyLimits& limits, int threads, bool as_whole)
       : old_(before, limits.parts, as_whole),
         new_(after, limits.parts, as_whole),
         brackets_(after.brackets),
         promise_(promise),
+        threads_(threads),
         as_whole_(as_whole),
         longest_(limits.longest),
         cut_from_(limits.longest),
@@ -254,6 +256,7 @@ class TextVerifier {
 
   // Nothing: the whole is to be asked.
   std::optional<VerifiedTexts> run(const std::function<bool()>& stopped) {
+    if (as_whole_ && !read_both()) return std::nullopt;
     while (!(old_.at_end() && new_.at_end())) {
       if ((stopped && stopped()) || !read_on() || !compare_what_ends()) return std::nullopt;
     }
@@ -269,6 +272,17 @@ class TextVerifier {
   }
 
  private:
+  // To their ends, beside each other.
+  [[nodiscard]] bool read_both() {
+    std::array<bool, 2> done = {};
+    parallel_for(threads_, done.size(), [&](std::size_t i) {
+      ProgramStream& stream = i == 0 ? old_ : new_;
+      done[i] = true;
+      while (done[i] && !stream.at_end()) done[i] = stream.read_on();
+    });
+    return done[0] && done[1];
+  }
+
   // One part more of the old program, and of the new one as much as goes with it.
   [[nodiscard]] bool read_on() {
     if (!old_.at_end() && !old_.read_on()) return false;
@@ -300,7 +314,7 @@ class TextVerifier {
     const FollowedPart before = old_.take(old_end);
     const FollowedPart after = new_.take(new_end);
     cut_from_ = longest_;
-    Verification found = verify(before.read(), after.read(), promise_);
+    Verification found = verify(before.read(), after.read(), promise_, threads_);
     if (!found.proved() && !as_whole_) return false;
     result_.in_brackets = events_in_brackets(after.read(), brackets_);
     add(std::move(found));
@@ -323,6 +337,7 @@ class TextVerifier {
   ProgramStream new_;
   const std::vector<LineBracket>& brackets_;
   const Promise& promise_;
+  int threads_;
   bool as_whole_;
   std::size_t longest_;
   std::size_t cut_from_;  // so many old blocks are held before a run is cut
@@ -336,8 +351,10 @@ std::optional<VerifiedTexts> verify_texts(const TextToVerify& before, const Text
                                           const Promise& promise,
                                           const std::function<bool()>& stopped,
                                           const VerifyLimits& limits) {
+  const std::size_t both = before.source.text().size() + after.source.text().size();
+  const int threads = both < limits.least_for_threads ? 1 : limits.threads;
   const auto verified = [&](bool as_whole) {
-    return TextVerifier(before, after, promise, limits, as_whole).run(stopped);
+    return TextVerifier(before, after, promise, limits, threads, as_whole).run(stopped);
   };
   const bool plain = before.reading.text.language == gcode::Language::kRs274 &&
                      after.reading.text.language == gcode::Language::kRs274;

@@ -43,6 +43,10 @@ struct TextToVerify {
 struct VerifyLimits {
   PartLimits parts = {};
   std::size_t longest = 65536;  // old blocks without a rapid that are held before a run is cut
+  // 0: all cores; one for programs of less text together than these bytes, which are done before
+  // another has begun.
+  int threads = 0;
+  std::size_t least_for_threads = std::size_t{1} << 16;
 };
 
 struct VerifiedTexts {

@@ -97,6 +97,35 @@ std::string damaged(std::vector<std::string> lines, std::mt19937& random) {
   return joined(lines, "\n");
 }
 
+TEST(PartVerification, SaysTheSameForAnyThreads) {
+  std::mt19937 random(8);
+  std::size_t refused = 0;
+  for (unsigned seed = 0; seed < kVerifiedSeeds; ++seed) {
+    SCOPED_TRACE(seed);
+    const std::string before = RandomPasses(seed).make();
+    const SmoothOptions options = options_of_seed(seed);
+    const std::string smoothed = as_a_whole(before, options).text;
+    const std::string after = seed % 3 == 0 ? smoothed : damaged(lines_of(smoothed), random);
+    const auto found_by = [&](int threads) {
+      return verified(before, after, options.tolerance_mm,
+                      {.threads = threads, .least_for_threads = 0});
+    };
+    const VerifiedTexts one = found_by(1);
+    refused += is_proved(one) ? 0 : 1;
+    for (const int threads : {2, 5}) {
+      const VerifiedTexts more = found_by(threads);
+      EXPECT_EQ(words_of(more.verification), words_of(one.verification));
+      ASSERT_EQ(more.verification.violations.size(), one.verification.violations.size());
+      for (std::size_t i = 0; i < one.verification.violations.size(); ++i) {
+        EXPECT_EQ(more.verification.violations[i].message, one.verification.violations[i].message);
+      }
+      EXPECT_EQ(postproc::words_of(more.of_old), postproc::words_of(one.of_old));
+      EXPECT_EQ(postproc::words_of(more.of_new), postproc::words_of(one.of_new));
+    }
+  }
+  EXPECT_GE(refused, kVerifiedSeeds / 4);
+}
+
 // A lost line, a swapped pair, another word, place, state or feed: anywhere.
 TEST(PartVerification, SaysWhatTheWholeSaysAndProvesNothingThatItRefuses) {
   std::mt19937 random(7);
