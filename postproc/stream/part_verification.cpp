@@ -174,6 +174,7 @@ struct MotionEnd {
   std::array<double, 3> at = {};
   double length = 0;  // mm, of the path up to there
   std::uint32_t block = 0;
+  gcode::Plane plane = gcode::Plane::kXY;  // of arcs, behind it
 };
 
 std::vector<MotionEnd> motion_ends(const gcode::Interpretation& read) {
@@ -184,7 +185,8 @@ std::vector<MotionEnd> motion_ends(const gcode::Interpretation& read) {
     length += length_of(motion);
     if (motion.kind == gcode::MotionKind::kRapid || !motion.end_known) continue;
     const geometry::Point3 at = motion.piece.end();
-    ends.push_back({{at.x(), at.y(), at.z()}, length, motion.block});
+    const gcode::Plane plane = read.states[read.blocks[motion.block].state_after].plane;
+    ends.push_back({{at.x(), at.y(), at.z()}, length, motion.block, plane});
   }
   return ends;
 }
@@ -218,7 +220,8 @@ class EndsByPosition {
 };
 
 // Where two long runs that go beside each other may be cut: the old and the new block after the
-// last position, the same to the last digit, at which a motion of each ends about as far along.
+// last position, the same to the last digit, at which a motion of each ends about as far along, in
+// the same plane: what is rewritten may have arcs in another one.
 std::optional<std::pair<std::uint32_t, std::uint32_t>> last_common_position(
     const gcode::Interpretation& before, const gcode::Interpretation& after) {
   const std::vector<MotionEnd> old_ends = motion_ends(before);
@@ -230,7 +233,7 @@ std::optional<std::pair<std::uint32_t, std::uint32_t>> last_common_position(
     const MotionEnd* nearest = nullptr;  // the first of those as near
     for (auto i = by_position.first(*old); i != EndsByPosition::kNone; i = by_position.next(i)) {
       const MotionEnd& end = new_ends[i];
-      if (end.at != old->at) continue;
+      if (end.at != old->at || end.plane != old->plane) continue;
       if (nearest == nullptr || apart(end) <= apart(*nearest)) nearest = &end;
     }
     if (nearest == nullptr) continue;

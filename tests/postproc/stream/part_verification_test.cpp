@@ -97,6 +97,22 @@ std::string damaged(std::vector<std::string> lines, std::mt19937& random) {
   return joined(lines, "\n");
 }
 
+// One run, in the new program in another plane for a while.
+TEST(PartVerification, CutsRunsWhereBothAreInOnePlane) {
+  const auto run = [](int first, int last) {
+    std::string text = "G21 G90 G17\nM3 S900\nG0 X0 Y0\nF900\n";
+    for (int i = 1; i <= 60; ++i) {
+      text += i == first ? "G18 " : i == last ? "G17 " : "";
+      text += fmt::format("G1 X{} Y{}\n", i, i % 2);
+    }
+    return text + "M5\nM30\n";
+  };
+  EXPECT_TRUE(in_parts(run(0, 0), run(0, 0), {0.01}, 4, 16));
+  EXPECT_TRUE(in_parts(run(0, 0), run(10, 20), {0.01}, 4, 16));
+  EXPECT_TRUE(in_parts(run(0, 0), run(2, 58), {0.01}, 4, 16));
+  EXPECT_FALSE(in_parts(run(0, 0), run(10, 70), {0.01}, 4, 16)) << "it ends in another plane";
+}
+
 TEST(PartVerification, SaysTheSameForAnyThreads) {
   std::mt19937 random(8);
   std::size_t refused = 0;
