@@ -145,6 +145,23 @@ bool boxes_apart(const Point3& a, const Point3& b, const Point3& c, const Point3
   return ((low - high).array() > apart).any();
 }
 
+// Whether the path goes on from b to c without turning, between edges from a and to d that are much
+// longer: then these lie on either side of the short step, with all chords of the same pieces. b
+// and c are ends of pieces: chords of one arc are of equal length.
+bool goes_on(const Point3& a, const Point3& b, const Point3& c, const Point3& d, double apart) {
+  constexpr double kMuchLonger = 10;  // then such chords turn by less than 0.2 radians
+  constexpr double kCosine = 0.5;
+  const Vector3 before = b - a;
+  const Vector3 step = c - b;
+  const Vector3 after = d - c;
+  const double longer = kMuchLonger * apart;
+  if (before.norm() < longer || after.norm() < longer) return false;
+  const auto ahead = [](const Vector3& u, const Vector3& v) {
+    return u.dot(v) >= kCosine * u.norm() * v.norm();
+  };
+  return ahead(before, step) && ahead(step, after) && ahead(before, after);
+}
+
 // Whether edges that share a cell are so near that they may meet, other than neighbours, or too
 // many are to be looked at.
 bool may_any_meet(std::span<const Point3> corners, std::span<const Entry> entries, double apart,
@@ -160,6 +177,7 @@ bool may_any_meet(std::span<const Point3> corners, std::span<const Entry> entrie
       const Point3& c = corners[second];
       const Point3& d = corners[second + 1];
       if (boxes_apart(a, b, c, d, apart)) continue;
+      if (second == first + 2 && goes_on(a, b, c, d, apart)) continue;
       if (distance(a, b, c, d) <= apart) return true;
     }
   }

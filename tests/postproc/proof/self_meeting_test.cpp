@@ -187,5 +187,24 @@ TEST(SelfMeeting, LeavesRoomForTheChordsOfVeryLongPaths) {
   EXPECT_FALSE(may_meet(turns));
 }
 
+// A step that is shorter than what is not certain, and goes on: on both sides of it are long edges.
+TEST(SelfMeeting, IsNoneOfEdgesOnEitherSideOfAShortStep) {
+  const auto with_step = [](const Point3& step, const Point3& last) {
+    Path turns = turns_with_line(1001);
+    turns.resize(1001);
+    const Point3 from = geometry::end_point(turns.back());
+    const Point3 begin = from + Point3(-1, 0, 0);
+    turns.push_back(Line{from, begin});
+    turns.push_back(Line{begin, begin + step});
+    turns.push_back(Line{begin + step, begin + step + last});
+    return turns;
+  };
+  EXPECT_FALSE(may_meet(with_step({-0.0002, 0, 0}, {-1, 0.2, 0})));
+  EXPECT_FALSE(may_meet(with_step({-0.0001, 0.0001, 0}, {-1, 0.2, 0})));
+  EXPECT_TRUE(may_meet(with_step({-0.0002, 0, 0}, {1, 0.2, 0}))) << "back";
+  EXPECT_TRUE(may_meet(with_step({0, 0.0002, 0}, {-1, 0, 0}))) << "across";
+  EXPECT_TRUE(may_meet(with_step({-0.0002, 0, 0}, {-0.0003, 0, 0}))) << "two short ones";
+}
+
 }  // namespace
 }  // namespace batten::postproc
