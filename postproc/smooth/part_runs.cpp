@@ -331,7 +331,7 @@ class PartSmoother {
       const RunState& work = runs_.works[works[i]];
       kind.record.add(work.smoothed.facts.scale.original.blocks,
                       outcomes_of(work.smoothed, options_));
-      kind.outlook_of_block += work.outlook;
+      kind.outlook_of_block += outlook_of(work.smoothed, options_);
       blocks += work.smoothed.facts.scale.original.blocks;
     }
     kind.outlook_of_block.others /= std::max(1.0, blocks);
