@@ -279,13 +279,6 @@ bool is_corner(const BsplineCurve& curve, double u) {
   return end - first >= curve.basis().degree();
 }
 
-std::vector<LinkVertex> on_curve(const BsplineCurve& curve, std::span<const double> parameters) {
-  std::vector<LinkVertex> vertices;
-  vertices.reserve(parameters.size());
-  for (const double u : parameters) vertices.push_back({curve.point_at(u), u});
-  return vertices;
-}
-
 // From the chord between two points of the curve to its middle point, across the chord: the height
 // of a bend, nothing where the curve crosses its chord.
 Vector3 bow(const BsplineCurve& curve, double from, double to) {
@@ -298,6 +291,13 @@ Vector3 bow(const BsplineCurve& curve, double from, double to) {
 }
 
 }  // namespace
+
+std::vector<LinkVertex> on_curve(const BsplineCurve& curve, std::span<const double> parameters) {
+  std::vector<LinkVertex> vertices;
+  vertices.reserve(parameters.size());
+  for (const double u : parameters) vertices.push_back({curve.point_at(u), u});
+  return vertices;
+}
 
 std::vector<LinkVertex> balanced_chords(const BsplineCurve& curve,
                                         std::span<const double> parameters) {

@@ -51,6 +51,10 @@ struct LinkVertex {
   double parameter = 0;
 };
 
+// The curve's points themselves.
+[[nodiscard]] std::vector<LinkVertex> on_curve(const BsplineCurve& curve,
+                                               std::span<const double> parameters);
+
 // Chords that lie on both sides of their curve instead of on its inside (section Balanced chords).
 //
 // Vertices beside the curve at these parameters (increasing): each is moved to the outside of its

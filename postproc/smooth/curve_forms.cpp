@@ -54,6 +54,9 @@ std::optional<Candidate> make_candidate(const RunTask& task, const RunTimes& tim
 
 namespace {
 
+// The place (FormKey) of the first lines of a named method: behind those of all chords.
+constexpr std::uint8_t kFirstNamed = 16;
+
 class CurveForms {
  public:
   CurveForms(const FormSetting& setting, const CurveOfRun& given, SmoothedRun& result)
@@ -126,7 +129,7 @@ class CurveForms {
     Offer arcs = offers_.arcs().back();
     arcs.options.arc_effort = geometry::ArcEffort::kBrief;
     make_best({arcs});
-    if (chords.size() > 1) make_best({chords.front()});
+    if (chords.size() > 1) make_best({chords.front()}, 1);
   }
 
   // In the order in which they are offered, or of what they are predicted to cost, but for those
@@ -317,7 +320,7 @@ class CurveForms {
   void add_named_lines() {
     double before = 0;
     double fewest = 0;
-    std::uint8_t place = 0;
+    std::uint8_t place = kFirstNamed;
     for (const double multiple : kFormTuning.named_chords) {
       const PlanOptions plan = offers_.within(multiple * share_);
       if (before > 0 && plan.max_deviation > kFormTuning.another * before) continue;

@@ -106,6 +106,10 @@ def main(batten, root):
         one = root / "samples/noisy_line_arc/program.ngc"
         by_axis, by_qtvcp = check.good(one), check.good(one, installed_filters.qtvcp_call)
         expect(by_axis.text == by_qtvcp.text, "AXIS and QtVCP get the same program")
+        subprocess.run([sys.executable, "-B", root / "tests/bench/make_large_programs.py", folder,
+                        "raster3d", "--blocks", "50000"], check=True, capture_output=True)
+        long = next(pathlib.Path(folder).glob("raster3d*"))
+        expect(check.good(long, installed_filters.qtvcp_call).progress, "QtVCP shows progress")
         check.refused("klartext.ngc", b"BEGIN PGM 1 MM\nL X+1 Y+2\nEND PGM 1 MM\n",
                       "foreign-language")
         latin1 = os.fsdecode(b"Fr\xe4sen.ngc")

@@ -33,12 +33,6 @@ Fineness fineness_for(double feed, const PlanOptions& options, double height) {
   return {height, highest, kPlans.periods * per_block};
 }
 
-Vertices on_the_curve(const BsplineCurve& curve, const std::vector<double>& parameters) {
-  Vertices vertices;
-  for (const double u : parameters) vertices.push_back({curve.point_at(u), u});
-  return vertices;
-}
-
 // `parameters` increase.
 Vertices on_the_curve(const geometry::CurvePieces& curve, const std::vector<double>& parameters) {
   Vertices vertices;
@@ -173,13 +167,13 @@ Vertices vertices_on(const Run& run, const geometry::SmoothCurve& fair, const Ma
     case Linearize::kIlca:
       if (const auto row =
               geometry::ilca(curve, section.from, section.to, {.max_deviation = deviation})) {
-        return on_the_curve(curve, row->parameters);
+        return geometry::on_curve(curve, row->parameters);
       }
       used_chords = true;
       break;
     case Linearize::kBlca:
-      return on_the_curve(curve,
-                          geometry::blca(curve, section.from, section.to, deviation).parameters);
+      return geometry::on_curve(
+          curve, geometry::blca(curve, section.from, section.to, deviation).parameters);
     case Linearize::kChord:
       break;
   }

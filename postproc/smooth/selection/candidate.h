@@ -79,8 +79,8 @@ struct SmoothedRun {
   std::vector<Candidate> candidates;  // none where `reason` says why
   std::string_view reason;
   bool left_out = false;  // there are more that the choice would not prefer to the best of these
-  bool is_cut_short = false;  // its budget (RunBudget) was spent before all was tried
-  std::vector<TriedForm> tried = {};
+  bool is_cut_short = false;          // its budget (RunBudget) was spent before all was tried
+  std::vector<TriedForm> tried = {};  // each key once
 };
 
 // Which candidates are made. Others are of use where the proof of the chosen one fails. Of a run

@@ -70,12 +70,13 @@ class FormRecord {
   void learn(double size_weight);
 
   // The cost of a form that is not made yet, beside one of such a cost; nothing where no form of
-  // this key is known. Infinite where it never may be written.
+  // this key is known, or on too few runs to say that it never may be written. Infinite where it
+  // never may be.
   [[nodiscard]] std::optional<double> predicted(const TriedForm& form,
                                                 const std::optional<FormKey>& best,
                                                 double best_cost) const;
 
-  // The least of a curve for this, of all its forms.
+  // The least of a curve for this, of all its forms; nothing where one of them is not predicted.
   [[nodiscard]] std::optional<double> predicted(CurveRole role, const std::optional<FormKey>& best,
                                                 double best_cost) const;
 

@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include "gcode/interpreter/interpreter.h"
 #include "gcode/reading/parser.h"
@@ -111,6 +113,21 @@ TEST_P(LikeRuns, ComeOutTheSameForAnyThreads) {
 INSTANTIATE_TEST_SUITE_P(EachPreference, LikeRuns,
                          testing::Values(Prefer::kTime, Prefer::kAccuracy, Prefer::kSize),
                          [](const auto& each) { return std::string(name_of(each.param)); });
+
+// What is known of a form is known by its key: no run has two forms of one.
+TEST_P(LikeRuns, HaveOneFormForEachKey) {
+  for (const char* target : {"linuxcnc", "grbl", "siemens"}) {
+    SmoothOptions options = options_for(target);
+    options.prefer = GetParam();
+    const ProgramPart part = waves_side_by_side();
+    for (const RunState& work : smoothed_waves(part, options).works) {
+      std::vector<FormKey> keys;
+      for (const TriedForm& form : work.smoothed.tried) keys.push_back(form.key);
+      std::ranges::sort(keys);
+      EXPECT_TRUE(std::ranges::adjacent_find(keys) == keys.end()) << target;
+    }
+  }
+}
 
 // All settings that explore compares, and methods that are asked for by name.
 TEST(AllLikeRuns, AreMadeInFullWhereTheirFormsAreAskedFor) {

@@ -348,6 +348,28 @@ TEST(BestMethod, WritesWhatRoundsCornersInFullOnlyWhereItsFarthestLinesWinTime) 
   EXPECT_EQ(stairs.arcs, 1);
 }
 
+// Each form that is made of a run of corners has a key of its own, and where the control blends
+// corners itself none of them is of a curve that rounds all of them to win time.
+TEST(BestMethod, KnowsEachFormOfARunOfCornersByItsKey) {
+  std::string text = "G21 G17 G90\nG0 X0 Y0 Z0\nF1800\n";
+  const std::vector<geometry::Point3> stairs = geometry::staircase_path(100, 0.3);
+  for (const geometry::Point3& p : std::span(stairs).subspan(1)) {
+    text += fmt::format("G1 X{:.3f} Y{:.3f}\n", p.x(), p.y());
+  }
+  for (const char* target : {"linuxcnc", "grbl"}) {
+    const SmoothedRun run = OneRun(text + "G0 Z5\nM2\n").smooth(options_for(target));
+    std::vector<FormKey> keys;
+    for (const TriedForm& form : run.tried) keys.push_back(form.key);
+    std::ranges::sort(keys);
+    EXPECT_TRUE(std::ranges::adjacent_find(keys) == keys.end()) << target;
+    const auto has = [&](CurveRole role) {
+      return std::ranges::find(keys, role, &FormKey::role) != keys.end();
+    };
+    EXPECT_TRUE(has(CurveRole::kCorners)) << target;
+    EXPECT_EQ(has(CurveRole::kRounding), std::string_view(target) == "grbl");
+  }
+}
+
 // --- which methods were tried -------------------------------------------------------------------
 
 Candidate candidate(std::string_view method, double time) {
