@@ -1,6 +1,7 @@
 #include "gcode/state/modal_state.h"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <type_traits>
 
@@ -200,6 +201,10 @@ double millimetres_per(Units units) {
 
 double printed_step(const NumberFormat& format, Units units) {
   return std::pow(10.0, -format.decimals) * millimetres_per(units);
+}
+
+double printed_rms(const NumberFormat& format, Units units) {
+  return printed_step(format, units) / std::sqrt(12);
 }
 
 }  // namespace batten::gcode

@@ -216,6 +216,9 @@ void set_units(ControlState& state, Units units);
 // The step between neighbouring numbers of a format, in mm.
 [[nodiscard]] double printed_step(const NumberFormat& format, Units units);
 
+// mm, rms across the path: each printed coordinate is off by up to half a step, evenly.
+[[nodiscard]] double printed_rms(const NumberFormat& format, Units units);
+
 // A plane's axes (0, 1, 2 for X, Y, Z) in the order in which its normal is right-handed: seen from
 // the tip of +Y, the way from Z to X is counter-clockwise, so G18 has Z before X and G3 is
 // counter-clockwise in all three.

@@ -174,6 +174,7 @@ class CurveForms {
       const bool limited = offer.options.most_arcs < PlanOptions().most_arcs;
       if (candidate) {
         result_.candidates.push_back(std::move(*candidate));
+        write_as_coarse(offer);
         put_run_where_slower(offer);
       } else if (limited) {
         result_.left_out = true;  // there may be more arcs than these
@@ -216,6 +217,22 @@ class CurveForms {
     if (is_added_with_run(offer, RunInPlace::kEverywhere)) {
       is_added_with_run(offer, RunInPlace::kWhereNeeded);
     }
+  }
+
+  // The last candidate again, with no more decimals than the run has, where it is larger by its
+  // digits alone.
+  void write_as_coarse(Offer offer) {
+    const Figures& fine = result_.candidates.back().figures;
+    const Figures& before = facts().scale.original;
+    if (offer.form != Form::kLines) return;
+    if (fine.blocks > before.blocks || fine.bytes <= before.bytes) return;
+    const double more = printed_with(task_.run.decimals) - facts().scale.printed;
+    if (!(more > 0)) return;
+    offer.options.most_decimals = task_.run.decimals;
+    offer.options.max_deviation -= kFormTuning.printed * more;
+    if (offer.options.tolerance > 0) offer.options.tolerance -= kFormTuning.printed * more;
+    if (!(offer.options.max_deviation > 0)) return;
+    if (auto coarse = made(offer)) result_.candidates.push_back(std::move(*coarse));
   }
 
   // Where it is as fast as the run, but for next to nothing. What was meant may be slower by as
@@ -300,8 +317,9 @@ class CurveForms {
   }
 
   [[nodiscard]] std::optional<Candidate> newly_made(const Offer& offer) {
-    const std::optional<OutputPlan> plan = plan_of(offer);
+    std::optional<OutputPlan> plan = plan_of(offer);
     if (!plan) return std::nullopt;
+    plan->most_decimals = offer.options.most_decimals;
     if (offer.options.run_in_place == RunInPlace::kNowhere) last_plan_ = plan;
     auto candidate = make_candidate(task_, setting_.times, *plan, facts(), result_.candidates);
     if (!candidate) return std::nullopt;
@@ -311,9 +329,18 @@ class CurveForms {
     candidate->has_vertices = offer.form == Form::kLines && offer.along == Along::kVertices;
     candidate->rounds_seam = curve_.path.rounds_seam && offer.along == Along::kCurve;
     const double off = setting_.meant.distance_of(plan->moves, curve_.path);
-    candidate->figures.distance = std::hypot(off, facts().scale.printed);
+    candidate->figures.distance =
+        std::hypot(off, printed_with(plan->most_decimals), facts().scattered);
     if (task_.scope == CandidateScope::kToRepeat) candidate->plan = plan;
     return candidate;
+  }
+
+  // mm, rms: what lines are off by that are written with no more decimals than so many.
+  [[nodiscard]] double printed_with(int most_decimals) const {
+    const gcode::Units units = task_.context.before.units;
+    gcode::NumberFormat format = place_format(*task_.options.target, units);
+    format.decimals = std::min(format.decimals, most_decimals);
+    return gcode::printed_rms(format, units);
   }
 
   // The farthest first, one by one: of nearer ones there are no fewer.

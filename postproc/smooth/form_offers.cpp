@@ -147,10 +147,9 @@ std::vector<Offer> FormOffers::vertices() const {
   if (!is_fair_as_meant() || one_sided_ || !task_.run.bends.empty()) return {};
   if (facts_.off <= kFormTuning.over_printed * facts_.scale.printed) return {};
   PlanOptions plan = within(given_.left);
-  // What is printed may be off by half a step in each of three coordinates, three times its rms.
-  plan.max_deviation =
-      std::min(given_.left + given_.curve.path.deviation,
-               tolerance_of(task_.run, task_.options.tolerance_mm) - 3 * facts_.scale.printed);
+  plan.max_deviation = std::min(given_.left + given_.curve.path.deviation,
+                                tolerance_of(task_.run, task_.options.tolerance_mm) -
+                                    kFormTuning.printed * facts_.scale.printed);
   const auto lines = static_cast<double>(task_.run.points.size() - 1);
   return {{Form::kLines, lines, 0, plan, Along::kVertices}};
 }

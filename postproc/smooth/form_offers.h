@@ -38,6 +38,8 @@ struct FormTuning {
   // Vertices are moved where chords are farther from the path (rms) than so many times what
   // printing them again adds.
   double over_printed = 2;
+  // What is printed may be off by half a step in each of three coordinates, three times its rms.
+  double printed = 3;
   // Of the time: what the farthest lines of a curve that is there to win some win at least, or the
   // others do not win what larger and farther forms have to (kCost).
   double wins = 0.005;

@@ -29,6 +29,9 @@ struct RunTuning {
   // no room to pass their ends; with so many times the tolerance there is.
   double takes_much = 0.35;
   double more_room = 3;
+  // A curve that takes less of its tolerance is not held by it: what it leaves the vertices is
+  // scatter.
+  double free = 0.8;
   // By the tolerance the ends of chords can be moved so that chords of so many tolerances are
   // clearly nearer.
   double moves_reach = 2;
@@ -37,7 +40,6 @@ struct RunTuning {
   // Part of the time, of a run of corners: the least that there must be left to win by a curve that
   // rounds them. Little brakes in the bound of the time, and all of them do.
   double left_at_corners = 0.07;
-  double sharp_corner = 30 * geometry::kPi / 180;  // radians: corners that turn more may stay
   // So many of the pieces are reverted at once that a long run is timed a few times only.
   std::size_t reverted_share = 4;
 };
@@ -47,7 +49,7 @@ bool has_sharp_corner(const std::vector<geometry::Point3>& points) {
   for (std::size_t i = 1; i + 1 < points.size(); ++i) {
     const geometry::Vector3 in = points[i] - points[i - 1];
     const geometry::Vector3 out = points[i + 1] - points[i];
-    if (std::atan2(in.cross(out).norm(), in.dot(out)) > kRun.sharp_corner) return true;
+    if (std::atan2(in.cross(out).norm(), in.dot(out)) > kBounds.sharp_corner) return true;
   }
   return false;
 }
@@ -77,7 +79,7 @@ class RunSmoother {
     CurveRequest meant = curve_request(Method::kFair);
     meant.accurate = true;
     const bool sharp = !options().keep_corners_deg && has_sharp_corner(run().points);
-    if (sharp) meant.keep_found_corner = kRun.sharp_corner;
+    if (sharp) meant.keep_found_corner = kBounds.sharp_corner;
     CurveRequest roomy = meant;
     roomy.tolerance *= kRun.more_room;
     const auto fair = curve_by(Method::kFair, is_hopeless ? roomy : meant);
@@ -152,6 +154,8 @@ class RunSmoother {
     // A form is printed, and so were the vertices.
     facts.scale.original.distance = std::hypot(facts.off, rounded() / std::sqrt(3.0));
     facts.scale.known = kBounds.known * fair_->noise;
+    const bool is_held = through_ || fair_->deviation > kRun.free * shares_.smoothing;
+    if (!is_known && !is_held && fair_->noise > rounding_) facts.scattered = facts.scale.known;
   }
 
   // mm, greatest rounding error that the vertices show. The curve leaves a part of it; those that
@@ -220,7 +224,8 @@ class RunSmoother {
     if (options().linearize || (wanted != Form::kAuto && wanted != Form::kLines)) return;
     if (!fits_ || is_left_out(CurveRole::kVertices)) return;
     const bool among_corners = corner_part() >= kBounds.corners;
-    if (!among_corners && !choose(result_, options()).order.empty()) return;
+    const bool nearest = options().prefer == Prefer::kAccuracy;
+    if (!among_corners && !nearest && !choose(result_, options()).order.empty()) return;
     if (among_corners && roomy && !through_ && !is_out_of_budget()) {
       through_ = curve_by(Method::kFair, *roomy);
     }
@@ -362,12 +367,6 @@ class RunSmoother {
   SmoothedRun& result_;
 };
 
-// mm, rms across the path: each printed coordinate is off by up to half a step, evenly.
-double printed_rms(const SmoothOptions& options, gcode::Units units) {
-  const double step = gcode::printed_step(place_format(*options.target, units), units);
-  return step / std::sqrt(12);
-}
-
 Form form_of(const Run& run) {
   const bool curves = std::ranges::any_of(run.bends, [](const RunBend& bend) {
     return std::holds_alternative<geometry::CubicBezier>(bend.piece);
@@ -388,7 +387,8 @@ RunFacts facts_of(const Run& run, const RunContext& context, const SmoothOptions
   scale.original.blocks = static_cast<double>(context.blocks);
   scale.original.bytes = static_cast<double>(context.bytes);
   scale.original.roughness = roughness_of(motions);
-  scale.printed = printed_rms(options, context.before.units);
+  scale.printed =
+      gcode::printed_rms(place_format(*options.target, context.before.units), context.before.units);
   scale.near = kCost.near * tolerance_of(run, options.tolerance_mm);
   scale.period = control_period(*options.machine);
   if (options.method == Method::kNone) {  // nothing is compared: only its time is reported

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -41,6 +42,8 @@ struct OutputPlan {
   std::vector<std::size_t> comments_after;  // of the run's last blocks
   bool chords_for_steps = false;            // see plan_lines
   bool arcs_as_chords = false;  // of ours, since the target's own would leave some arcs too far
+  // Of the places of lines, where the target's are more.
+  int most_decimals = std::numeric_limits<int>::max();
 };
 
 // Where the run stands in place of lines and arcs (slow_parts.h).
@@ -69,6 +72,7 @@ struct PlanOptions {
   // minlink: about as many lines, made quickly for their number.
   bool counted = false;
   RunInPlace run_in_place = RunInPlace::kNowhere;
+  int most_decimals = std::numeric_limits<int>::max();  // OutputPlan
   // More arcs than this are not looked for.
   std::size_t most_arcs = std::numeric_limits<std::size_t>::max();
   // mm, moves to run. Of lines, where max_deviation is not to be the same everywhere; of arcs, with

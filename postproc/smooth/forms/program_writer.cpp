@@ -158,6 +158,7 @@ std::optional<RunText> write_run(const OutputPlan& plan, const Run& run,
   };
   NumberFormat format = may_have_arcs(plan.form) ? arc_end_format(target, before.units)
                                                  : place_format(target, before.units);
+  if (!may_have_arcs(plan.form)) format.decimals = std::min(format.decimals, plan.most_decimals);
   out.writer().use_coordinates(format);
   auto curve = plan.curves.begin();
   for (std::size_t i = 0; i < plan.moves.size();) {

@@ -70,6 +70,7 @@ struct RunFacts {             // whether it is rewritten or not
   double off = 0;             // mm, rms distance of its vertices' path from the one that was meant
   double max_curvature = 0;   // 1/mm, circle through three neighbouring vertices
   double noise = 0;           // mm, rms distance of the vertices from the fair curve
+  double scattered = 0;       // mm, rms: what its vertices' scatter leaves unknown of that path
   double coarse = 0;          // part of its vertices (coarse_part)
   double fair_curvature = 0;  // 1/mm, greatest of the fair curve
 };

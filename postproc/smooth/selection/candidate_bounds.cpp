@@ -53,19 +53,21 @@ Figures CandidateBounds::least(Form form, double blocks, double distance) const 
   }
   least.blocks = kBounds.fewer * blocks;
   least.bytes = std::min(least_bytes(form) * least.blocks, scale.original.bytes);
-  least.distance = distance;
+  least.distance = std::hypot(distance, so_far_.facts.scattered);
   return least;
 }
 
-// What only rounds corners is no nearer to the path than the lines are.
+// What rounds corners is within the tolerance of them: it comes nearer to the path by as much.
 bool CandidateBounds::is_hopeless() const {
   const auto& [run, context, options, scope, memo, record] = task_;
   if (options.prefer == Prefer::kSize || is_forced(options.output, so_far_.facts, options))
     return false;
-  if (coarse_part(run, tolerance_of(run, options.tolerance_mm)) < kBounds.coarse) return false;
-  const CostScale& scale = so_far_.facts.scale;
+  const double tolerance = tolerance_of(run, options.tolerance_mm);
+  if (coarse_part(run, tolerance) < kBounds.coarse) return false;
+  CostScale scale = so_far_.facts.scale;
+  scale.original.distance = std::max(chord_height_beyond(run, 0), scale.near);
   const Figures corners = least(Form::kLines, 2 * scale.original.blocks / kBounds.fewer,
-                                std::max(scale.original.distance, scale.near));
+                                chord_height_beyond(run, tolerance));
   return objection_to(corners, scale, options.prefer) != Objection::kNone ||
          cost_of(corners, scale, options.prefer) >= cost_of(scale.original, scale, options.prefer);
 }
@@ -252,6 +254,24 @@ double coarse_part(const Run& run, double tolerance) {
     if (std::atan2(across, a.dot(b)) * shorter / 8 > tolerance) ++coarse;
   }
   return p.size() > 2 ? static_cast<double>(coarse) / static_cast<double>(p.size() - 2) : 0;
+}
+
+double chord_height_beyond(const Run& run, double within) {
+  double squares = 0;
+  double all = 0;
+  const auto& p = run.points;
+  for (std::size_t i = 1; i + 1 < p.size(); ++i) {
+    const Vector3 a = p[i] - p[i - 1];
+    const Vector3 b = p[i + 1] - p[i];
+    const double length = a.norm() + b.norm();
+    all += length;
+    const double turn = std::atan2(a.cross(b).norm(), a.dot(b));
+    if (turn > kBounds.sharp_corner) continue;
+    const double height = turn * std::min(a.norm(), b.norm()) / 8;
+    const double beyond = std::max(0.0, height - within);
+    squares += length * beyond * beyond;
+  }
+  return all > 0 ? std::sqrt(squares / all) : 0;
 }
 
 bool rounding_is_worth_trying(double least_time, double time) {

@@ -22,6 +22,7 @@ struct BoundTuning {
   double fewer = 0.8;          // of the blocks that are expected there may be so few
   double least_bytes = 8;      // of a block
   double shorter = 0.9;  // of the bytes of a block in the same form, which it may be shorter than
+  double sharp_corner = 30 * geometry::kPi / 180;  // radians: what turns more is meant as a corner
   double corners = 0.5;  // part of the vertices that makes a run one of corners
   double worth_trying = 0.02;  // part of the time: the least that there must be left to win
   // Of the time: what a search for each corner wins at most on the quick rounding of corners.
@@ -86,6 +87,10 @@ class CandidateBounds {
 // The part of the run's vertices whose chords would leave a curve through them by more than
 // `tolerance`: a run of a coarser one, of which only the corners could be rounded.
 [[nodiscard]] double coarse_part(const Run& run, double tolerance);
+
+// mm: the height of the run's chords below a curve through their ends that has its sharp corners,
+// rms along the run, as far as it is more than `within`: what a path so near to the run leaves.
+[[nodiscard]] double chord_height_beyond(const Run& run, double within);
 
 // Whether another curve may win enough for its work, where the fastest form so far takes `time`
 // (s).

@@ -257,13 +257,11 @@ TEST(SmoothRun, SaysThatTheTargetCannot) {
   EXPECT_EQ(kept.reason, gcode::reason::kTargetCannot);
 }
 
-// Four chords, as high as the tolerance, of which only the vertices can be moved.
+// Chords a little higher than the tolerance, and slow: only the vertices can be moved.
 TEST(RunSmoother, LeavesNothingOutWhenItStartsAgain) {
-  SmoothOptions options = options_for("grbl");
-  options.prefer = Prefer::kAccuracy;
+  const SmoothOptions options = options_for("grbl");
   const OneRun run(
-      "G21 G17 G90 G94\nG0 X25.6738 Y28.2651 Z0\nF1000\nG1 X25.5726 Y27.9429\n"
-      "X25.3654 Y27.6826\nX25.0522 Y27.4844\nX24.633 Y27.3482\nG0 Z10\nM30\n");
+      wave_program({.lines = 60, .step = 0.8, .height = 2, .length = 18, .feed = 600}));
   RunState state{0, run.context(), run.smooth(options, CandidateScope::kToChoose)};
   EXPECT_TRUE(state.smoothed.left_out);
   state.start_again(run.run(), options);

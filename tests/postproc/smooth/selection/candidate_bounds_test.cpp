@@ -13,13 +13,17 @@ namespace batten::postproc {
 namespace {
 
 // Chords of a millimetre are 30 um away from where the wave bends most, and at 300 mm/min no corner
-// costs time: nothing within 10 um could be faster or smaller, or nearer in as few blocks.
+// costs time: nothing within 10 um could be faster or smaller, or nearer in as few blocks. Within
+// 16 um the path that was meant is nearly in reach, for who wants to be near to it.
 TEST(CandidateBounds, GiveUpARunOfCoarseChords) {
-  const auto is_hopeless = [](double step, Form output = Form::kAuto) {
+  const auto is_hopeless = [](double step, Form output = Form::kAuto, Prefer prefer = Prefer::kTime,
+                              double tolerance = 0.01) {
     const OneRun run(
         wave_program({.lines = 100, .step = step, .height = 2, .length = 18, .feed = 300}));
     SmoothOptions options = options_for("linuxcnc");
     options.output = output;
+    options.prefer = prefer;
+    options.tolerance_mm = tolerance;
     const RunContext context = run.context();
     SmoothOptions none = options;
     none.method = Method::kNone;
@@ -30,6 +34,9 @@ TEST(CandidateBounds, GiveUpARunOfCoarseChords) {
   EXPECT_TRUE(is_hopeless(1));
   EXPECT_FALSE(is_hopeless(0.1));
   EXPECT_FALSE(is_hopeless(1, Form::kArcs)) << "what is asked for by name is tried";
+  EXPECT_TRUE(is_hopeless(1, Form::kAuto, Prefer::kAccuracy));
+  EXPECT_TRUE(is_hopeless(1, Form::kAuto, Prefer::kTime, 0.016));
+  EXPECT_FALSE(is_hopeless(1, Form::kAuto, Prefer::kAccuracy, 0.016));
 }
 
 // The bound against every form that is made, by each model of a control. Joints are rounded by the
