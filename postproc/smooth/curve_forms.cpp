@@ -114,22 +114,20 @@ class CurveForms {
     return wanted == Form::kAuto ? result_.candidates.size() > first_ : has_form(wanted);
   }
 
-  // Of a curve that is there to win time: its farthest lines, which take little to make, and what
-  // is faster only where these win some.
+  // Of a curve that is there to win time in a run of corners: its farthest lines, which take little
+  // to make; and its farthest arcs, which are about as fast, where they might win by their size.
   void add_fastest() {
-    std::vector<Offer> chords = offers_.chords();
-    key_ = {role_, Form::kLines, Along::kCurve, 0};
-    result_.tried.push_back({key_});
-    if (auto lines = made(chords.back())) {
-      const double before = facts().scale.original.times.programmed;
-      const double time = lines->figures.times.programmed;
-      result_.candidates.push_back(std::move(*lines));
-      if (time > (1 - kFormTuning.wins) * before) return;
-    }
+    const double best = cost_to_beat(result_, task_.options);
+    make_best({offers_.chords().back()});
+    const double size = weights_of(task_.options.prefer).size;
+    const auto own = std::span(result_.candidates).subspan(first_);
+    const bool may_win = std::ranges::any_of(own, [&](const Candidate& c) {
+      return cost_of(c.figures, facts().scale, task_.options.prefer) - size <= best;
+    });
+    if (!may_win) return;
     Offer arcs = offers_.arcs().back();
     arcs.options.arc_effort = geometry::ArcEffort::kBrief;
     make_best({arcs});
-    if (chords.size() > 1) make_best({chords.front()}, 1);
   }
 
   // In the order in which they are offered, or of what they are predicted to cost, but for those

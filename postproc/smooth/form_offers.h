@@ -40,8 +40,7 @@ struct FormTuning {
   double over_printed = 2;
   // What is printed may be off by half a step in each of three coordinates, three times its rms.
   double printed = 3;
-  // Of the time: what the farthest lines of a curve that is there to win some win at least, or the
-  // others do not win what larger and farther forms have to (kCost).
+  // Of the time: what corners rounded one by one have to win, for a search of each to be begun.
   double wins = 0.005;
   double another = 0.9;               // of what is farther, at most, or it is the same again
   double bands[3] = {1, 0.97, 0.94};  // parts of the band around arcs in which few are looked for
@@ -67,8 +66,7 @@ struct CurveOfRun {
   double share = 0;  // mm, of the tolerance: the form's
   double left = 0;   // mm, what the curve leaves of the tolerance
   CurveRole role = CurveRole::kFirst;
-  // There to win time alone: where its farthest lines win next to none, no other form of it is
-  // made.
+  // There to win time alone: its farthest lines tell whether arcs of it are made.
   bool for_time = false;
 };
 
