@@ -16,12 +16,12 @@
 #include "postproc/runs/run_cutting.h"
 #include "postproc/runs/run_grouping.h"
 #include "postproc/runs/run_path.h"
+#include "postproc/smooth/boundary_timing.h"
 #include "postproc/smooth/growth.h"
-#include "postproc/smooth/kept_neighbours.h"
+#include "postproc/smooth/like_runs.h"
 #include "postproc/smooth/repeated_runs.h"
 #include "postproc/smooth/run_smoother.h"
 #include "postproc/smooth/selection/candidate_bounds.h"
-#include "postproc/smooth/selection/run_times.h"
 #include "postproc/smooth/selection/selection.h"
 #include "postproc/system/parallel_for.h"
 
@@ -80,87 +80,6 @@ std::vector<Section> with_long_runs_cut(std::vector<Section> sections,
   }
   return cut;
 }
-
-// Runs that were cut from one are not run from rest to rest. Each is timed with some moves of its
-// neighbours, and the time of the moves about a cut, which are in two of these times, is shared
-// between them: so the times of all are that of the whole.
-class BoundaryTiming {
- public:
-  BoundaryTiming(const ProgramPart& part, const SmoothOptions& options, PartRuns& runs)
-      : part_(part), options_(options), runs_(runs) {}
-
-  void run() {
-    for (RunState& work : runs_.works) {
-      const Section& section = runs_.sections[work.section];
-      const std::uint32_t end = section.last_block + 1;
-      const bool begins = is_cut(section.first_block);
-      const bool ends = is_cut(end);
-      if (!begins && !ends) {
-        if (options_.method == Method::kNone) continue;
-        put_between(before(section.first_block), after(end), std::get<Run>(section.content),
-                    *options_.machine, work.context);
-        continue;
-      }
-      Times shared;
-      if (begins) {
-        work.context.lead = before(section.first_block);
-        shared += times_about(section.first_block, work.context.after.path);
-      }
-      if (ends) {
-        work.context.tail = after(end);
-        shared += times_about(end, work.context.after.path);
-      }
-      work.context.of_neighbours = Times().add(shared, 0.5);
-    }
-  }
-
- private:
-  [[nodiscard]] bool is_cut(std::uint32_t block) const {
-    if (part_.window && block == 0) return !part_.window->moves_before.empty();
-    if (part_.window && block == part_.program.blocks.size()) {
-      return !part_.window->moves_behind.empty();
-    }
-    return is_cut_of_long_run(block) || std::ranges::binary_search(runs_.copied_cuts, block);
-  }
-
-  [[nodiscard]] bool is_cut_of_long_run(std::uint32_t block) const {
-    return std::ranges::binary_search(runs_.cuts, block);
-  }
-
-  // The whole looks no further than a window that ends at the cuts of long runs.
-  [[nodiscard]] std::uint32_t window_begin(std::uint32_t block) const {
-    if (is_cut_of_long_run(block)) return 0;
-    const auto next = std::ranges::upper_bound(runs_.cuts, block);
-    return next == runs_.cuts.begin() ? 0 : *std::prev(next);
-  }
-
-  [[nodiscard]] std::uint32_t window_end(std::uint32_t block) const {
-    const auto next = std::ranges::upper_bound(runs_.cuts, block);
-    const bool is_last = is_cut_of_long_run(block) || next == runs_.cuts.end();
-    return is_last ? static_cast<std::uint32_t>(part_.program.blocks.size()) : *next;
-  }
-
-  [[nodiscard]] std::vector<TimedPiece> before(std::uint32_t block) const {
-    if (part_.window && block == 0) return part_.window->moves_before;
-    return moves_before(part_.program, part_.meaning, block, window_begin(block));
-  }
-
-  [[nodiscard]] std::vector<TimedPiece> after(std::uint32_t block) const {
-    if (part_.window && block == part_.program.blocks.size()) return part_.window->moves_behind;
-    return moves_from(part_.program, part_.meaning, block, window_end(block));
-  }
-
-  [[nodiscard]] Times times_about(std::uint32_t block, const gcode::PathControl& path) const {
-    std::vector<TimedPiece> moves = before(block);
-    const std::vector<TimedPiece> rest = after(block);
-    moves.insert(moves.end(), rest.begin(), rest.end());
-    return times_of(moves, *options_.machine, path);
-  }
-
-  const ProgramPart& part_;
-  const SmoothOptions& options_;
-  PartRuns& runs_;
-};
 
 // Blocks at which sections that are copied begin or end, but where runs are cut anyway.
 std::vector<std::uint32_t> cuts_about(std::span<const LineRange> copied,
@@ -257,7 +176,7 @@ class PartSmoother {
       if (!is_repeated[i]) choose_for(work);
       if (!has_smoothed(work)) stopped = true;
     };
-    std::vector<LikeRuns> kinds = like_runs(works, shapes);
+    std::vector<LikeRuns> kinds = kinds_of(works, shapes);
     std::vector<std::size_t> in_full;
     std::vector<std::pair<std::size_t, const LikeRuns*>> others;
     for (const LikeRuns& kind : kinds) {
@@ -266,7 +185,8 @@ class PartSmoother {
     }
     parallel_for(options_.threads, in_full.size(),
                  [&](std::size_t i) { smooth(in_full[i], nullptr); });
-    for (LikeRuns& kind : kinds) learn(works, kind);
+    const auto state_of = [&](std::size_t i) -> const RunState& { return runs_.works[works[i]]; };
+    for (LikeRuns& kind : kinds) kind.learn(state_of, options_);
     parallel_for(options_.threads, others.size(), [&](std::size_t i) {
       const auto& [other, kind] = others[i];
       smooth(other, &kind->record);
@@ -293,49 +213,15 @@ class PartSmoother {
     return !stopped;
   }
 
-  // Runs of corners, or others. Some of them are smoothed in full; the others in the forms that
-  // these show to be worth it (postproc/smooth/selection/form_record.h).
-  struct LikeRuns {
-    std::vector<std::size_t> in_full = {};
-    std::vector<std::size_t> others = {};
-    FormRecord record = {};
-    Outlook outlook_of_block = {};  // of those in full, on average
-  };
-
   // Of `works` those that `shapes` lists: all in full where a method or all settings are asked for.
-  [[nodiscard]] std::vector<LikeRuns> like_runs(const std::vector<std::size_t>& works,
-                                                const std::vector<std::size_t>& shapes) const {
+  [[nodiscard]] std::vector<LikeRuns> kinds_of(const std::vector<std::size_t>& works,
+                                               const std::vector<std::size_t>& shapes) const {
     const bool named = options_.method != Method::kBest || memos_ != nullptr;
     if (named || !options_.share_work) return {{.in_full = shapes}};
-    std::vector<std::size_t> alike[2];
-    for (const std::size_t i : shapes) {
+    return like_runs(shapes, [&](std::size_t i) {
       const Run& run = run_of(runs_.works[works[i]]);
-      const double coarse = coarse_part(run, tolerance_of(run, options_.tolerance_mm));
-      alike[coarse >= kBounds.corners ? 1 : 0].push_back(i);
-    }
-    std::vector<LikeRuns> kinds(std::size(alike));
-    for (std::size_t k = 0; k < kinds.size(); ++k) {
-      std::vector<bool> is_full(alike[k].size());
-      for (const std::size_t place : runs_in_full(alike[k].size())) is_full[place] = true;
-      for (std::size_t i = 0; i < alike[k].size(); ++i) {
-        (is_full[i] ? kinds[k].in_full : kinds[k].others).push_back(alike[k][i]);
-      }
-    }
-    return kinds;
-  }
-
-  void learn(const std::vector<std::size_t>& works, LikeRuns& kind) const {
-    if (kind.others.empty()) return;
-    double blocks = 0;
-    for (const std::size_t i : kind.in_full) {
-      const RunState& work = runs_.works[works[i]];
-      kind.record.add(work.smoothed.facts.scale.original.blocks,
-                      outcomes_of(work.smoothed, options_));
-      kind.outlook_of_block += outlook_of(work.smoothed, options_);
-      blocks += work.smoothed.facts.scale.original.blocks;
-    }
-    kind.outlook_of_block.others /= std::max(1.0, blocks);
-    kind.record.learn(weights_of(options_.prefer).size);
+      return coarse_part(run, tolerance_of(run, options_.tolerance_mm)) >= kBounds.corners;
+    });
   }
 
   void choose_for(RunState& work) {
@@ -542,7 +428,7 @@ PartRuns find_runs(const ProgramPart& part, const SmoothOptions& options,
     runs.moves += motion_count(std::get<Run>(runs.sections[work.section].content));
   }
   for (RunState& work : runs.works) work.context.moves_of_program = runs.moves;
-  BoundaryTiming(part, options, runs).run();
+  time_at_boundaries(part, options, {runs.cuts, runs.copied_cuts}, runs.sections, runs.works);
   return runs;
 }
 
