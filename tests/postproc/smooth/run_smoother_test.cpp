@@ -270,6 +270,24 @@ TEST(RunSmoother, LeavesNothingOutWhenItStartsAgain) {
   EXPECT_TRUE(state.chosen()->has_vertices);
 }
 
+// The curve through scattered vertices is itself off by some of the scatter, and so is every form
+// along it; but what rounding makes is no scatter, and of a curve that the tolerance holds nothing
+// is known.
+TEST(SmoothRun, KnowsWhatScatterLeavesUnknown) {
+  const auto smoothed_with = [](double noise, double tolerance) {
+    SmoothOptions options = options_for("grbl");
+    options.tolerance_mm = tolerance;
+    return OneRun(wave_program({.noise = noise})).smooth(options);
+  };
+  const SmoothedRun noisy = smoothed_with(0.008, 0.05);
+  EXPECT_GT(noisy.facts.scattered, 0.001);
+  for (const Candidate& c : noisy.candidates) {
+    EXPECT_GE(c.figures.distance, noisy.facts.scattered);
+  }
+  EXPECT_EQ(smoothed_with(0, 0.05).facts.scattered, 0);
+  EXPECT_EQ(smoothed_with(0.008, 0.01).facts.scattered, 0);
+}
+
 // Its numbers are rounded anew, to thousandths: no vertex is so far from its own that this would be
 // more than the tolerance.
 TEST(RunSmoother, MovesVerticesByWhatTheirPrintingLeaves) {

@@ -346,17 +346,23 @@ TEST(BestMethod, WritesWhatRoundsCornersInFullOnlyWhereItsFarthestLinesMayLead) 
   const Made zigzag = made_of(geometry::zigzag_line(30, 0.15, 2));
   EXPECT_EQ(zigzag.lines, 1);
   EXPECT_EQ(zigzag.arcs, 0);
-  // Four bends one way, four the other.
-  std::vector<geometry::Point3> bends = {{0, 0, 0}};
-  double heading = 0;
-  for (int i = 0; i < 16; ++i) {
-    bends.push_back(bends.back() +
-                    0.4 * geometry::Vector3(std::cos(heading), std::sin(heading), 0));
-    heading += (i / 4 % 2 == 0 ? 20 : -20) * geometry::kPi / 180;
-  }
-  const Made winding = made_of(bends);
-  EXPECT_EQ(winding.lines, 1);
-  EXPECT_EQ(winding.arcs, 1);
+  // Four bends one way, four the other, and so on.
+  const auto winding = [&](int edges, double degrees) {
+    std::vector<geometry::Point3> points = {{0, 0, 0}};
+    double heading = 0;
+    for (int i = 0; i < edges; ++i) {
+      const geometry::Vector3 way(std::cos(heading), std::sin(heading), 0);
+      points.push_back(points.back() + 0.4 * way);
+      heading += (i / 4 % 2 == 0 ? degrees : -degrees) * geometry::kPi / 180;
+    }
+    return made_of(points);
+  };
+  const Made gentle = winding(16, 20);
+  EXPECT_EQ(gentle.lines, 1);
+  EXPECT_EQ(gentle.arcs, 1);
+  const Made sharp = winding(8, 30);
+  EXPECT_EQ(sharp.lines, 1);
+  EXPECT_EQ(sharp.arcs, 0);
 }
 
 // Each form that is made of a run of corners has a key of its own, and where the control blends

@@ -1,9 +1,11 @@
 // What is said of forms before they are made must hold for them.
 #include "postproc/smooth/selection/candidate_bounds.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <string_view>
 
@@ -37,6 +39,22 @@ TEST(CandidateBounds, GiveUpARunOfCoarseChords) {
   EXPECT_TRUE(is_hopeless(1, Form::kAuto, Prefer::kAccuracy));
   EXPECT_TRUE(is_hopeless(1, Form::kAuto, Prefer::kTime, 0.016));
   EXPECT_FALSE(is_hopeless(1, Form::kAuto, Prefer::kAccuracy, 0.016));
+}
+
+// Chords of 1 mm of a circle of radius 10 are 1 / 80 mm high. Corners of 90 degrees are meant.
+TEST(CandidateBounds, KnowHowFarChordsAreFromACurveThroughThem) {
+  const std::size_t chords = 63;
+  std::string text = "G21 G90 G17\nG0 X10 Y0\nF1000\n";
+  for (std::size_t i = 1; i <= chords; ++i) {
+    const double angle = 2 * geometry::kPi * static_cast<double>(i) / chords;
+    text += fmt::format("G1 X{:.4f} Y{:.4f}\n", 10 * std::cos(angle), 10 * std::sin(angle));
+  }
+  const OneRun circle(text + "M2\n");
+  EXPECT_NEAR(chord_height_beyond(circle.run(), 0), 0.0125, 0.0002);
+  EXPECT_NEAR(chord_height_beyond(circle.run(), 0.01), 0.0025, 0.0002);
+  EXPECT_EQ(chord_height_beyond(circle.run(), 0.013), 0);
+  const OneRun square("G21 G90 G17\nG0 X0 Y0\nG1 X9 F900\nY9\nX0\nY0\nX9\nY9\nM2\n");
+  EXPECT_EQ(chord_height_beyond(square.run(), 0), 0);
 }
 
 // The bound against every form that is made, by each model of a control. Joints are rounded by the
