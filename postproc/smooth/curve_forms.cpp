@@ -218,19 +218,28 @@ class CurveForms {
   }
 
   // The last candidate again, with no more decimals than the run has, where it is larger by its
-  // digits alone.
-  void write_as_coarse(Offer offer) {
+  // digits alone. Then `offer` is that of the new one.
+  void write_as_coarse(Offer& offer) {
     const Figures& fine = result_.candidates.back().figures;
     const Figures& before = facts().scale.original;
     if (offer.form != Form::kLines) return;
     if (fine.blocks > before.blocks || fine.bytes <= before.bytes) return;
-    const double more = printed_with(task_.run.decimals) - facts().scale.printed;
-    if (!(more > 0)) return;
-    offer.options.most_decimals = task_.run.decimals;
-    offer.options.max_deviation -= kFormTuning.printed * more;
-    if (offer.options.tolerance > 0) offer.options.tolerance -= kFormTuning.printed * more;
-    if (!(offer.options.max_deviation > 0)) return;
-    if (auto coarse = made(offer)) result_.candidates.push_back(std::move(*coarse));
+    const double more =
+        kFormTuning.printed * (printed_with(task_.run.decimals) - facts().scale.printed);
+    // Where the deviation leaves room for it, so does the tolerance.
+    if (!(more > 0 && more < offer.options.max_deviation)) return;
+    Offer coarse = offer;
+    coarse.options.most_decimals = task_.run.decimals;
+    coarse.options.max_deviation -= more;
+    if (coarse.options.tolerance > 0) coarse.options.tolerance -= more;
+    std::optional<OutputPlan> plan = std::exchange(last_plan_, std::nullopt);
+    auto candidate = made(coarse);
+    if (!candidate) {
+      last_plan_ = std::move(plan);
+      return;
+    }
+    result_.candidates.push_back(std::move(*candidate));
+    offer = std::move(coarse);
   }
 
   // Where it is as fast as the run, but for next to nothing. What was meant may be slower by as

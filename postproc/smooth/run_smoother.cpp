@@ -453,6 +453,7 @@ std::optional<SmoothedRun> smooth_repeat(const Run& run, const RunContext& conte
   result.facts.fair_curvature = first.facts.fair_curvature;
   result.facts.scale.original.distance = first.facts.scale.original.distance;
   result.facts.scale.known = first.facts.scale.known;
+  result.facts.scattered = first.facts.scattered;
   result.reason = first.reason;
   result.left_out = first.left_out;
   result.is_cut_short = first.is_cut_short;

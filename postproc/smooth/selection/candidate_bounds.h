@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "geometry/basic/point.h"
 #include "postproc/machine/machine.h"
 #include "postproc/options/options.h"
 #include "postproc/runs/section.h"

@@ -297,5 +297,23 @@ TEST(HillRows, OfAsManyLinesKeepTheirDecimals) {
   }
 }
 
+// Whoever asks for accuracy gets nothing that is farther off than what is fastest.
+TEST(HillRows, AreNoFartherByAccuracyThanByTime) {
+  for (const double height : {0.002, 0.005, 0.0125}) {
+    for (const char* target : {"linuxcnc", "grbl", "fanuc"}) {
+      SCOPED_TRACE(testing::Message() << target << ' ' << height);
+      const auto distance_by = [&](Prefer prefer) {
+        SmoothOptions options = options_for(target);
+        options.prefer = prefer;
+        options.tolerance_mm = 0.01;
+        const SmoothResult result = smoothed(hill_rows(height, 3), options);
+        EXPECT_TRUE(result.proved);
+        return result.path_after.distance_mm;
+      };
+      EXPECT_LE(distance_by(Prefer::kAccuracy), 1.001 * distance_by(Prefer::kTime));
+    }
+  }
+}
+
 }  // namespace
 }  // namespace batten::postproc
