@@ -134,8 +134,7 @@ class Search {
     std::size_t improved = 0;  // the level that saw farther than the ones before it
     double farthest = -1;
     for (std::size_t arcs = 0; arcs < levels_.size() && arcs < best_arcs_; ++arcs) {
-      keep_best(levels_[arcs]);
-      const std::vector<std::size_t> level = levels_[arcs];  // levels_ grows below
+      const std::vector<std::size_t> level = best_of_level(arcs);
       if (!level.empty() && nodes_[level.front()].score > farthest) {
         farthest = nodes_[level.front()].score;
         improved = arcs;
@@ -163,8 +162,7 @@ class Search {
 
   void add_to(std::size_t arcs, Node node) {
     if (levels_.size() <= arcs) levels_.resize(arcs + 1);
-    levels_[arcs].push_back(nodes_.size());
-    nodes_.push_back(std::move(node));
+    levels_[arcs].push_back(std::move(node));
   }
 
   // How good a place is to go on from: how far the next arc gets.
@@ -240,11 +238,17 @@ class Search {
     }
   }
 
-  // The farthest-seeing ones, not too many of one place.
-  void keep_best(std::vector<std::size_t>& level) const {
-    std::ranges::stable_sort(level, std::greater<>(),
-                             [this](std::size_t i) { return nodes_[i].score; });
+  // The farthest-seeing nodes, that are followed; the others are gone.
+  std::vector<std::size_t> best_of_level(std::size_t arcs) {
+    std::vector<Node> level = std::exchange(levels_[arcs], {});
+    std::ranges::stable_sort(level, std::greater<>(), &Node::score);
     if (level.size() > effort_.width) level.resize(effort_.width);
+    std::vector<std::size_t> followed;
+    for (Node& node : level) {
+      followed.push_back(nodes_.size());
+      nodes_.push_back(std::move(node));
+    }
+    return followed;
   }
 
   [[nodiscard]] Point2 rounded(const Point2& p) const {
@@ -556,11 +560,11 @@ class Search {
   std::size_t count_;
   std::optional<Vector2> end_along_;
   std::vector<Node> nodes_;
-  std::vector<Stop> found_;                       // from the nodes of a level
-  LeadingStops leading_;                          // of those
-  std::vector<std::vector<std::size_t>> levels_;  // nodes by the number of arcs so far
-  std::size_t best_arcs_;                         // what the best chain so far costs
-  std::optional<std::size_t> best_;               // its last node
+  std::vector<Stop> found_;                // from the nodes of a level
+  LeadingStops leading_;                   // of those
+  std::vector<std::vector<Node>> levels_;  // to be followed, by the number of arcs so far
+  std::size_t best_arcs_;                  // what the best chain so far costs
+  std::optional<std::size_t> best_;        // its last node
 };
 
 void check(const ArcSplineOptions& options) {
