@@ -8,6 +8,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -56,6 +57,12 @@ struct NewCrossing {
   Point3 place = Point3::Zero();
 };
 
+// A path whose pieces are made where they are needed, so that it need not be held.
+struct PathSource {
+  std::size_t size = 0;  // pieces
+  std::function<PathPiece(std::size_t)> piece;
+};
+
 // Where the new path crosses, touches or runs over itself, while the old one, which it follows
 // within `tolerance` both ways and in order, does not there. Looked at are the pieces that lie in
 // planes across an axis (the one across which most of them lie), each plane for itself; arcs and
@@ -64,9 +71,8 @@ struct NewCrossing {
 //
 // None in planes where a path lies in a heap (see above): this is a safeguard beside the proof of
 // the distance, and says nothing about what runs through space.
-[[nodiscard]] std::vector<NewCrossing> new_crossings(std::span<const PathPiece> before,
-                                                     std::span<const PathPiece> after,
-                                                     double tolerance);
+[[nodiscard]] std::vector<NewCrossing> new_crossings(const PathSource& before,
+                                                     const PathSource& after, double tolerance);
 
 // The edge of the band as closed polygons: the outer ones counter-clockwise, holes clockwise. Round
 // ends and corners have corners of their own every 15 degrees, on the outside by less than a

@@ -2,6 +2,7 @@
 #include <CGAL/box_intersection_d.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <map>
@@ -27,20 +28,27 @@ constexpr double kChordPart = 0.01;
 // fits into a circle of twice the tolerance, and either of its sides moves by one.
 constexpr double kSameLoop = 4;
 
+// What an edge belongs to (PartEdge).
+struct EdgeOwner {
+  std::uint32_t label = 0;
+  std::uint32_t part = 0;
+};
+
 // What lies in one plane across an axis.
 struct Layer {
   FlatEdges edges;
-  std::vector<PartEdge> parts;  // for each edge
+  std::vector<EdgeOwner> owners;  // of each edge
+
+  void add(const PartEdge& edge) {
+    if (edges.add(edge.from, edge.to)) owners.push_back({edge.label, edge.part});
+  }
 };
 
 using Layers = std::map<double, Layer>;  // by plane_height
 
 Layers layers_of(std::span<const PartEdge> edges) {
   Layers layers;
-  for (const PartEdge& edge : edges) {
-    Layer& layer = layers[edge.height];
-    if (layer.edges.add(edge.from, edge.to)) layer.parts.push_back(edge);
-  }
+  for (const PartEdge& edge : edges) layers[edge.height].add(edge);
   return layers;
 }
 
@@ -48,16 +56,44 @@ bool is_flat(const ChordPolyline& chords, std::size_t edge, int axis) {
   return std::abs(chords.points[edge][axis] - chords.points[edge + 1][axis]) <= kSamePlace;
 }
 
-// With pieces as labels.
-std::vector<PartEdge> flat_edges(const ChordPolyline& chords, int axis) {
-  std::vector<PartEdge> edges;
+// Those in planes across the axis, with pieces as labels.
+template <typename Take>
+void each_flat_edge(const ChordPolyline& chords, int axis, const Take& take) {
   for (std::size_t i = 0; i < chords.edge_count(); ++i) {
     if (!is_flat(chords, i, axis)) continue;
     const Point3& from = chords.points[i];
-    edges.push_back({across(from, axis), across(chords.points[i + 1], axis),
-                     plane_height(from[axis]), static_cast<std::uint32_t>(chords.pieces[i]), 0});
+    take(PartEdge{across(from, axis), across(chords.points[i + 1], axis), plane_height(from[axis]),
+                  static_cast<std::uint32_t>(chords.pieces[i]), 0});
   }
-  return edges;
+}
+
+// Calls `use` with some of its chords after the other, whose pieces are numbered from `first` on.
+template <typename Use>
+void each_part_in_chords(const PathSource& path, double tolerance, const Use& use) {
+  constexpr std::size_t kAtOnce = 1024;
+  std::vector<PathPiece> pieces;
+  for (std::size_t first = 0; first < path.size; first += kAtOnce) {
+    const std::size_t end = std::min(first + kAtOnce, path.size);
+    const std::size_t from = first == 0 ? 0 : first - 1;  // a gap between two parts is a line
+    pieces.clear();
+    for (std::size_t i = from; i < end; ++i) pieces.push_back(path.piece(i));
+    if (from < first) {
+      const Point3 joint = end_point(pieces.front());
+      pieces.front() = Line{joint, joint};
+    }
+    use(cut_into_chords(pieces, kChordPart * tolerance), from);
+  }
+}
+
+Layers layers_of(const PathSource& path, int axis, double tolerance) {
+  Layers layers;
+  each_part_in_chords(path, tolerance, [&](const ChordPolyline& chords, std::size_t first) {
+    each_flat_edge(chords, axis, [&](PartEdge edge) {
+      edge.label += static_cast<std::uint32_t>(first);
+      layers[edge.height].add(edge);
+    });
+  });
+  return layers;
 }
 
 // What the old path does where bands overlap.
@@ -172,14 +208,14 @@ std::vector<Meeting> new_ones(std::vector<Meeting> met, const FlatEdges& before,
 }
 
 // Of the old edges about the meeting of two new ones, in their parts.
-PartCrossing crossing_of(const Layer& old, const PartEdge& first, const PartEdge& second,
+PartCrossing crossing_of(const Layer& old, const EdgeOwner& first, const EdgeOwner& second,
                          const Meeting& meeting, double tolerance) {
   PartCrossing crossing{{}, meeting.place};
   for (const std::size_t edge : meeting.near) {
-    const std::uint32_t part = old.parts[edge].part;
+    const auto [label, part] = old.owners[edge];
     if (part != first.part && part != second.part) continue;
     if (edge_distance(old.edges, edge, meeting.place) > kSameLoop * tolerance) continue;
-    crossing.labels.push_back(old.parts[edge].label);
+    crossing.labels.push_back(label);
   }
   if (crossing.labels.empty()) crossing.labels = {first.label, second.label};
   std::ranges::sort(crossing.labels);
@@ -189,42 +225,39 @@ PartCrossing crossing_of(const Layer& old, const PartEdge& first, const PartEdge
 }
 
 // The axis across which most of the chords lie; Z before Y before X.
-int main_axis(const ChordPolyline& chords) {
-  int axis = 2;
-  std::size_t most = 0;
-  for (const int candidate : {2, 1, 0}) {
-    std::size_t flat = 0;
-    for (std::size_t i = 0; i < chords.edge_count(); ++i) {
-      if (is_flat(chords, i, candidate)) ++flat;
+int main_axis(const PathSource& path, double tolerance) {
+  std::array<std::size_t, 3> flat{};
+  each_part_in_chords(path, tolerance, [&](const ChordPolyline& chords, std::size_t) {
+    for (std::size_t axis = 0; axis < flat.size(); ++axis) {
+      for (std::size_t i = 0; i < chords.edge_count(); ++i) {
+        if (is_flat(chords, i, static_cast<int>(axis))) ++flat[axis];
+      }
     }
-    if (flat <= most) continue;
-    most = flat;
-    axis = candidate;
+  });
+  int most = 2;
+  for (const int axis : {1, 0}) {
+    if (flat[static_cast<std::size_t>(axis)] > flat[static_cast<std::size_t>(most)]) most = axis;
   }
-  return axis;
+  return most;
 }
 
 }  // namespace
 
-std::vector<NewCrossing> new_crossings(std::span<const PathPiece> before,
-                                       std::span<const PathPiece> after, double tolerance) {
-  if (before.empty() || after.empty()) return {};
-  const ChordPolyline chords = cut_into_chords(after, kChordPart * tolerance);
-  const int axis = main_axis(chords);
+std::vector<NewCrossing> new_crossings(const PathSource& before, const PathSource& after,
+                                       double tolerance) {
+  const int axis = main_axis(after, tolerance);
   // Of the old path only where the new one meets itself, which is seldom.
   std::optional<Layers> then;
   std::map<std::pair<std::size_t, std::size_t>, NewCrossing> all;  // by pieces
-  for (const auto& [height, layer] : layers_of(flat_edges(chords, axis))) {
+  for (const auto& [height, layer] : layers_of(after, axis, tolerance)) {
     std::vector<Meeting> met = meetings_of(layer.edges);
     if (met.empty()) continue;
-    if (!then) {
-      then = layers_of(flat_edges(cut_into_chords(before, kChordPart * tolerance), axis));
-    }
+    if (!then) then = layers_of(before, axis, tolerance);
     const auto old = then->find(height);
     if (old == then->end()) continue;
     for (const Meeting& meeting : new_ones(std::move(met), old->second.edges, tolerance)) {
       const auto [a, b] = meeting.edges;
-      NewCrossing crossing{layer.parts[a].label, layer.parts[b].label};
+      NewCrossing crossing{layer.owners[a].label, layer.owners[b].label};
       crossing.place[axis] = height;
       crossing.place[axis == 0 ? 1 : 0] = meeting.place.x();
       crossing.place[axis == 2 ? 1 : 2] = meeting.place.y();
@@ -240,11 +273,12 @@ std::vector<NewCrossing> new_crossings(std::span<const PathPiece> before,
 std::vector<PartEdge> flat_edges(std::span<const PathPiece> path, int axis, double tolerance,
                                  std::uint32_t label, std::uint32_t part) {
   if (path.empty()) return {};
-  std::vector<PartEdge> edges = flat_edges(cut_into_chords(path, kChordPart * tolerance), axis);
-  for (PartEdge& edge : edges) {
+  std::vector<PartEdge> edges;
+  each_flat_edge(cut_into_chords(path, kChordPart * tolerance), axis, [&](PartEdge edge) {
     edge.label = label;
     edge.part = part;
-  }
+    edges.push_back(edge);
+  });
   return edges;
 }
 
@@ -255,15 +289,15 @@ std::vector<PartCrossing> new_crossings_of_parts(std::span<const PartEdge> befor
   const Layers then = layers_of(before);
   for (const auto& [height, layer] : layers_of(after)) {
     std::vector<Meeting> met = meetings_of(layer.edges);
-    const auto& parts = layer.parts;
+    const auto& owners = layer.owners;
     std::erase_if(met, [&](const Meeting& meeting) {
-      return parts[meeting.edges.first].part == parts[meeting.edges.second].part;
+      return owners[meeting.edges.first].part == owners[meeting.edges.second].part;
     });
     const auto old = then.find(height);
     if (met.empty() || old == then.end()) continue;
     for (const Meeting& meeting : new_ones(std::move(met), old->second.edges, tolerance)) {
       const auto& [a, b] = meeting.edges;
-      crossings.push_back(crossing_of(old->second, parts[a], parts[b], meeting, tolerance));
+      crossings.push_back(crossing_of(old->second, owners[a], owners[b], meeting, tolerance));
     }
   }
   return crossings;

@@ -187,25 +187,29 @@ bool folds(const FlatEdges& edges, std::size_t before, std::size_t after) {
 
 bool FlatEdges::add(const Point2& from, const Point2& to) {
   if ((from - to).norm() <= kSamePlace) return false;
-  const bool goes_on = !edges_.empty() && (edges_.back().to - from).norm() <= kSamePlace;
-  if (!goes_on) first_.push_back(edges_.size());
-  edges_.push_back({goes_on ? edges_.back().to : from, to, first_.size() - 1});
+  const bool goes_on = size() > 0 && (points_.back() - from).norm() <= kSamePlace;
+  if (!goes_on) {
+    first_.push_back(size());
+    points_.push_back(from);
+  }
+  points_.push_back(to);
+  chain_.push_back(static_cast<std::uint32_t>(first_.size() - 1));
   return true;
 }
 
 bool FlatEdges::is_closed(std::size_t chain) const {
   const std::size_t first = first_[chain];
-  const std::size_t end = chain + 1 < first_.size() ? first_[chain + 1] : edges_.size();
-  return end - first > 2 && (edges_[first].from - edges_[end - 1].to).norm() <= kSamePlace;
+  const std::size_t end = chain + 1 < first_.size() ? first_[chain + 1] : size();
+  return end - first > 2 && (from(first) - to(end - 1)).norm() <= kSamePlace;
 }
 
 std::optional<std::size_t> FlatEdges::after(std::size_t edge) const {
-  const std::size_t chain = edges_[edge].chain;
-  if (edge + 1 < edges_.size() && edges_[edge + 1].chain == chain) return edge + 1;
+  const std::size_t chain = chain_[edge];
+  if (edge + 1 < size() && chain_[edge + 1] == chain) return edge + 1;
   if (is_closed(chain)) return first_[chain];
   // A ring that left the plane for a while is closed where its last chain meets the first one.
-  const bool is_last = edge + 1 == edges_.size() && first_.size() > 1;
-  if (is_last && (edges_.front().from - edges_[edge].to).norm() <= kSamePlace) return 0;
+  const bool is_last = edge + 1 == size() && first_.size() > 1;
+  if (is_last && (from(0) - to(edge)).norm() <= kSamePlace) return 0;
   return {};
 }
 

@@ -32,24 +32,22 @@ class FlatEdges {
   // there is an edge: not where the two are one point.
   bool add(const Point2& from, const Point2& to);
 
-  [[nodiscard]] std::size_t size() const { return edges_.size(); }
-  [[nodiscard]] const Point2& from(std::size_t edge) const { return edges_[edge].from; }
-  [[nodiscard]] const Point2& to(std::size_t edge) const { return edges_[edge].to; }
+  [[nodiscard]] std::size_t size() const { return chain_.size(); }
+  [[nodiscard]] const Point2& from(std::size_t edge) const { return points_[edge + chain_[edge]]; }
+  [[nodiscard]] const Point2& to(std::size_t edge) const {
+    return points_[edge + chain_[edge] + 1];
+  }
 
   // The edge that starts where this one ends, along the path or round a closed chain; also round a
   // path that ends where it began and left the plane between.
   [[nodiscard]] std::optional<std::size_t> after(std::size_t edge) const;
 
  private:
-  struct Edge {
-    Point2 from;
-    Point2 to;
-    std::size_t chain;
-  };
   [[nodiscard]] bool is_closed(std::size_t chain) const;
 
-  std::vector<Edge> edges_;
-  std::vector<std::size_t> first_;  // edge of each chain
+  std::vector<Point2> points_;        // of each chain one more than it has edges
+  std::vector<std::uint32_t> chain_;  // of each edge
+  std::vector<std::size_t> first_;    // edge of each chain
 };
 
 struct EdgePair {

@@ -46,9 +46,10 @@ ChordPolyline cut_into_chords(std::span<const PathPiece> path, double max_error)
   max_error = max_error * coarser * coarser;
 
   ChordPolyline result;
-  result.points.reserve(path.size() + 1);
-  result.errors.reserve(path.size());
-  result.pieces.reserve(path.size());
+  const std::size_t most = path.size() + static_cast<std::size_t>(std::min(wanted, kMostChords));
+  result.points.reserve(most + 1);
+  result.errors.reserve(most);
+  result.pieces.reserve(most);
   const auto add = [&result](const Point3& end, double error, std::size_t piece) {
     result.points.push_back(end);
     result.errors.push_back(error);

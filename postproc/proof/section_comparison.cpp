@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <set>
 #include <string>
 #include <utility>
@@ -14,6 +15,7 @@
 #include "geometry/band/band_region.h"
 #include "geometry/band/tolerance_band.h"
 #include "geometry/distance/band_comparison.h"
+#include "geometry/distance/joints.h"
 #include "geometry/path/path.h"
 
 namespace batten::postproc {
@@ -181,7 +183,46 @@ double read_within(const Part& part) {
   return 0;
 }
 
-geometry::BandComparison compare(const PartPair& pair, const Promise& promise) {
+// Paths of more pieces are compared part by part, which takes less memory. Each part is so long
+// that what its ends cost is little.
+constexpr std::size_t kPiecesAtOnce = 256;
+
+std::vector<geometry::PassedPlace> passed_places(const Part& part) {
+  constexpr double kNowhere = std::numeric_limits<double>::quiet_NaN();
+  std::vector<geometry::PassedPlace> places;
+  places.reserve(part.last());
+  double length = 0;
+  for (std::size_t i = 0; i + 1 < part.size(); ++i) {
+    length += geometry::length_of(part.piece(i));
+    const geometry::Point3 end = part.piece(i).end();
+    const bool meets = end == part.piece(i + 1).start();
+    places.push_back({meets ? end : geometry::Point3::Constant(kNowhere), length});
+  }
+  return places;
+}
+
+// Parts that follow each other in both paths, from places that both pass.
+std::vector<PartPair> parts_between_joints(const PartPair& pair) {
+  const auto& [before, after] = pair;
+  std::vector<PartPair> parts;
+  std::size_t old_from = before.begin;
+  std::size_t new_from = after.begin;
+  const auto add_up_to = [&](std::size_t old_end, std::size_t new_end) {
+    parts.push_back({{before.side, old_from, old_end}, {after.side, new_from, new_end}});
+    old_from = old_end;
+    new_from = new_end;
+  };
+  if (std::max(before.size(), after.size()) > 2 * kPiecesAtOnce) {
+    for (const geometry::Joint& joint :
+         geometry::joints_of(passed_places(before), passed_places(after), kPiecesAtOnce)) {
+      add_up_to(before.begin + joint.a, after.begin + joint.b);
+    }
+  }
+  add_up_to(before.end, after.end);
+  return parts;
+}
+
+geometry::BandComparison compare_at_once(const PartPair& pair, const Promise& promise) {
   const Path before = pair.before.path();
   const Path after = pair.after.path();
   const double within = read_within(pair.before) + read_within(pair.after);
@@ -192,6 +233,32 @@ geometry::BandComparison compare(const PartPair& pair, const Promise& promise) {
           : geometry::BandComparison{geometry::compare_paths(before, after, tolerance), 0, 0};
   compared.paths.bounds.at_most += within;
   return compared;
+}
+
+// Part by part where all of these are proved, else at once.
+geometry::BandComparison compare(const PartPair& pair, const Promise& promise) {
+  const std::vector<PartPair> parts = parts_between_joints(pair);
+  if (parts.size() == 1) return compare_at_once(pair, promise);
+  geometry::BandComparison all;
+  all.paths.verdict = Verdict::kProved;
+  for (const PartPair& part : parts) {
+    const PartPair middle = without_same_ends(part);
+    if (middle.before.size() == 0 && middle.after.size() == 0) continue;
+    geometry::BandComparison found = compare_at_once(middle, promise);
+    if (found.paths.verdict != Verdict::kProved) return compare_at_once(pair, promise);
+    all.corner_at_most = std::max(all.corner_at_most, found.corner_at_most);
+    all.cut_corners += found.cut_corners;
+    const std::size_t size = all.paths.certificate_size + found.paths.certificate_size;
+    const double at_least = std::max(all.paths.bounds.at_least, found.paths.bounds.at_least);
+    if (found.paths.bounds.at_most >= all.paths.bounds.at_most) {
+      found.paths.worst_piece_a += middle.before.begin - pair.before.begin;
+      found.paths.worst_piece_b += middle.after.begin - pair.after.begin;
+      all.paths = found.paths;
+    }
+    all.paths.bounds.at_least = at_least;
+    all.paths.certificate_size = size;
+  }
+  return all;
 }
 
 Stretch stretch_of(const PartPair& pair, double tolerance_mm, geometry::BandComparison compared) {
@@ -235,8 +302,11 @@ Violation distance_violation(const PartPair& pair, const PathComparison& compari
 std::vector<Violation> crossing_violations(const PartPair& pair, const PartPair& middle,
                                            double tolerance_mm) {
   std::vector<Violation> violations;
+  const auto source = [](const Part& part) {
+    return geometry::PathSource{part.size(), [&part](std::size_t i) { return part.piece(i); }};
+  };
   for (const auto& [first_piece, second_piece, place] :
-       geometry::new_crossings(pair.before.path(), pair.after.path(), tolerance_mm)) {
+       geometry::new_crossings(source(pair.before), source(pair.after), tolerance_mm)) {
     Violation violation;
     violation.kind = ViolationKind::kCrossing;
     violation.id = "crosses-itself";

@@ -36,6 +36,13 @@ std::vector<Point2> figure_of_eight(const Point2& shift) {
   return points;
 }
 
+std::vector<NewCrossing> crossings_of(const Path& before, const Path& after, double tolerance) {
+  const auto source = [](const Path& path) {
+    return PathSource{path.size(), [&path](std::size_t i) { return path[i]; }};
+  };
+  return new_crossings(source(before), source(after), tolerance);
+}
+
 Path path_at(const std::vector<Point2>& points, double height, int axis = 2) {
   std::vector<Point3> places;
   for (const Point2& p : points) {
@@ -157,8 +164,8 @@ TEST(NewCrossing, PassesThatChangeSidesAreFound) {
     over[i].y() = 0.009;
     over[44 - i].y() = 0.006;
   }
-  EXPECT_TRUE(new_crossings(path_at(old, 1), path_at(apart, 1), 0.01).empty());
-  const auto found = new_crossings(path_at(old, 1), path_at(over, 1), 0.01);
+  EXPECT_TRUE(crossings_of(path_at(old, 1), path_at(apart, 1), 0.01).empty());
+  const auto found = crossings_of(path_at(old, 1), path_at(over, 1), 0.01);
   ASSERT_EQ(found.size(), 2u) << "over to the other side, and back";
   EXPECT_EQ(found[0].first_piece, 7u);
   EXPECT_EQ(found[0].second_piece, 36u);
@@ -181,8 +188,8 @@ TEST_P(NewCrossings, AreFoundInEveryPlane) {
   const auto& [name, before, after, found] = GetParam();
   for (const int axis : {0, 1, 2}) {
     const Path old = path_at(before, 4, axis);
-    EXPECT_EQ(!new_crossings(old, path_at(after, 4, axis), 0.01).empty(), found);
-    EXPECT_TRUE(new_crossings(old, old, 0.01).empty());
+    EXPECT_EQ(!crossings_of(old, path_at(after, 4, axis), 0.01).empty(), found);
+    EXPECT_TRUE(crossings_of(old, old, 0.01).empty());
   }
 }
 
@@ -223,7 +230,7 @@ TEST(NewCrossing, ACircleMayEndWhereItBegan) {
   const Point3 start(10, 0, 0);
   const Path circle{Line{{15, 0, 0}, start}, Arc{start, {-10, 0, 0}, {0, 0, 0}, {0, 0, 1}, pi},
                     Arc{{-10, 0, 0}, start, {0, 0, 0}, {0, 0, 1}, pi}, Line{start, {15, 3, 0}}};
-  EXPECT_TRUE(new_crossings(old, circle, 0.01).empty());
+  EXPECT_TRUE(crossings_of(old, circle, 0.01).empty());
 }
 
 TEST(NewCrossing, PathsInSpaceAreNotLookedAt) {
@@ -233,8 +240,8 @@ TEST(NewCrossing, PathsInSpaceAreNotLookedAt) {
   for (const Point2& p : over) {
     rising.emplace_back(p.x(), p.y(), 0.001 * static_cast<double>(rising.size()));
   }
-  EXPECT_TRUE(new_crossings(path_at(old, 0), path_through(rising), 0.01).empty());
-  EXPECT_TRUE(new_crossings({}, path_at(over, 0), 0.01).empty());
+  EXPECT_TRUE(crossings_of(path_at(old, 0), path_through(rising), 0.01).empty());
+  EXPECT_TRUE(crossings_of({}, path_at(over, 0), 0.01).empty());
 }
 
 // --- outline -----------------------------------------------------------------------------------
@@ -268,7 +275,7 @@ TEST(NewCrossing, IsNotWhereARingClosesThatLeftThePlane) {
   Path after = before;
   std::get<Line>(after[30]).end.z() += 1e-4;
   std::get<Line>(after[31]).start.z() += 1e-4;
-  EXPECT_TRUE(new_crossings(before, after, 0.05).empty());
+  EXPECT_TRUE(crossings_of(before, after, 0.05).empty());
 }
 
 }  // namespace

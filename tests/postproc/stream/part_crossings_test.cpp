@@ -94,7 +94,12 @@ geometry::Path cuts_of(const std::string& text) {
 }
 
 bool crosses_anew(const std::string& before, const std::string& after) {
-  return !geometry::new_crossings(cuts_of(before), cuts_of(after), kCrossingTolerance).empty();
+  const auto source = [](const geometry::Path& path) {
+    return geometry::PathSource{path.size(), [&path](std::size_t i) { return path[i]; }};
+  };
+  const geometry::Path old_path = cuts_of(before);
+  const geometry::Path new_path = cuts_of(after);
+  return !geometry::new_crossings(source(old_path), source(new_path), kCrossingTolerance).empty();
 }
 
 std::size_t kept_for_crossing(const SmoothResult& result) {
