@@ -118,6 +118,8 @@ constexpr double kTurnsBack = 170 * std::numbers::pi / 180;
 // At a corner like this the machine slows down whether it is rounded or not; raster rows end so.
 constexpr double kSharp = 60 * std::numbers::pi / 180;
 
+constexpr int kSharpCorner = 2;  // rank in a Fitness, and above it
+
 // A line that was cut into blocks does not turn between them, but for rounding.
 constexpr double kNoTurn = 1e-6;
 
@@ -129,7 +131,7 @@ Fitness split_score_at(const geometry::Point3& before, const geometry::Point3& a
   const geometry::Vector3 b = after - at;
   const double turn = std::atan2(a.cross(b).norm(), a.dot(b));
   if (turn > kTurnsBack) return {3, 0};
-  if (turn > kSharp) return {2, turn};
+  if (turn > kSharp) return {kSharpCorner, turn};
   if (turn <= kNoTurn) return {1, 0};
   return {0, -turn};
 }
@@ -201,10 +203,14 @@ void LongRunCuts::take_move(std::uint32_t block, const gcode::Motion& motion) {
 
 void LongRunCuts::add_move(std::uint32_t block, const geometry::Point3& start,
                            const geometry::Point3& end) {
-  if (adjacent_ && moves_ >= from_ + limits_.shortest) {
+  const std::size_t from_corner = corners_.empty() ? 0 : corners_.back().vertex;
+  const bool after_corner = moves_ >= from_corner + limits_.uncut_at_most / 2;
+  if (adjacent_ && (moves_ >= from_ + limits_.shortest || after_corner)) {
     const gcode::Block& of_text = program_->blocks[block];
-    candidates_.push_back(
-        {moves_, split_score_at(before_, start, end), {of_text.line, of_text.span.begin}});
+    const CutCandidate here{
+        moves_, split_score_at(before_, start, end), {of_text.line, of_text.span.begin}};
+    if (moves_ >= from_ + limits_.shortest) candidates_.push_back(here);
+    if (after_corner && here.split_score.first >= kSharpCorner) corners_.push_back(here);
   }
   last_line_ = program_->blocks[block].line;
   if (moves_ == 0) first_line_ = last_line_;
@@ -238,15 +244,25 @@ void LongRunCuts::cut(bool run_ends) {
 
 void LongRunCuts::end_run() {
   if (moves_ > 0) cut(true);
-  if (moves_ + 1 > limits_.whole_at_most && !cut_lines_.empty() && limits_.rewritten) {
-    note_self_proximity();
-  }
+  if (moves_ + 1 <= limits_.whole_at_most) cut_at_corners();
+  if (!cut_lines_.empty() && limits_.rewritten) note_self_proximity();
   for (geometry::ClusterCover& cover : covers_) cover.clear();
   cut_lines_.clear();
   moves_ = plunging_ = from_ = 0;
   flat_ = adjacent_ = false;
   candidates_.clear();
+  corners_.clear();
   pending_.clear();
+}
+
+void LongRunCuts::cut_at_corners() {
+  cut_lines_.clear();
+  if (moves_ + 1 <= limits_.uncut_at_most) return;
+  for (const CutCandidate& corner : corners_) {
+    if (corner.vertex + limits_.uncut_at_most / 2 > moves_) break;
+    found_.push_back(corner.block);
+    cut_lines_.push_back(corner.block.line);
+  }
 }
 
 void LongRunCuts::note_self_proximity() {
@@ -264,7 +280,7 @@ void LongRunCuts::note_self_proximity() {
 
 LongRuns find_long_runs(const gcode::Program& program, const gcode::Interpretation& meaning,
                         const LongRunLimits& limits, const GroupingOptions& grouping) {
-  if (program.blocks.size() < limits.whole_at_most) return {};
+  if (program.blocks.size() < std::min(limits.whole_at_most, limits.uncut_at_most)) return {};
   LongRunCuts cuts(limits, grouping);
   cuts.begin_part(program, meaning);
   for (std::uint32_t i = 0; i < program.blocks.size(); ++i) cuts.take(i);

@@ -99,7 +99,8 @@ struct SelfProximity {
 [[nodiscard]] bool holds(std::span<const LineRange> ranges, std::uint32_t line);
 
 struct LongRunLimits {
-  std::size_t whole_at_most = 50000;  // points of a run that is not cut
+  std::size_t whole_at_most = 50000;  // points of a run that is not cut, but at sharp corners
+  std::size_t uncut_at_most = 20000;  // points of a run that is not cut there, either
   std::size_t shortest = 12500;       // motions of a part; kNeighbourBlocks or more
   std::size_t longest = 25000;        // the same, but where it cannot be cut
   bool rewritten = true;              // else nothing can come near to anything
@@ -110,7 +111,8 @@ struct LongRunLimits {
 // windows find the same ones. Why, and what a cut costs: docs/long_programs.md.
 //
 // Looks at lines between arcs and all that ends a run: of more than `whole_at_most` points they are
-// cut as cut_places cuts runs, where a motion follows another one in the next block, and neither
+// cut as cut_places cuts runs; of fewer, but more than `uncut_at_most`, at reversals and sharp
+// corners alone, into parts of half as many and more. Both where a motion follows another one in the next block, and neither
 // goes straight along Z: at the end of a run that would be a plunge.
 class LongRunCuts {
  public:
@@ -135,6 +137,7 @@ class LongRunCuts {
   void take_move(std::uint32_t block, const gcode::Motion& motion);
   void add_move(std::uint32_t block, const geometry::Point3& start, const geometry::Point3& end);
   void cut(bool run_ends);
+  void cut_at_corners();
   void note_self_proximity();
 
   LongRunLimits limits_;
@@ -152,6 +155,7 @@ class LongRunCuts {
   std::size_t from_ = 0;                                // vertex: the last cut
   std::vector<CutCandidate> candidates_;                // `shortest` and more after it
   std::vector<LongRunCut> pending_;                     // of a run that may still be short
+  std::vector<CutCandidate> corners_;                   // where it is cut if it is not long
   std::vector<LongRunCut> found_;
   std::vector<std::uint32_t> cut_lines_;          // all cuts of the run that goes on
   std::array<geometry::ClusterCover, 3> covers_;  // its flat moves across X, Y and Z

@@ -29,10 +29,6 @@ namespace batten::postproc {
 
 namespace {
 
-// Neighbours of a piece that are timed with it: the machine looks ahead over so many blocks at
-// most.
-constexpr std::size_t kNeighbours = 100;
-
 // Of the blocks that there were: more lines than these for a long run are little.
 constexpr double kMostBlocks = 0.7;
 
@@ -339,10 +335,7 @@ class PartSmoother {
     state.context.moves_of_program = runs_.moves;
     state.first = piece.first;
     state.last = piece.last;
-    const std::size_t from = piece.first - std::min(piece.first, kNeighbours);
-    const std::size_t to = std::min(piece.last + kNeighbours, whole.points.size() - 1);
-    state.context.lead = timed_pieces(whole, from, piece.first);
-    state.context.tail = timed_pieces(whole, piece.last, to);
+    state.surround(whole);
     return state;
   }
 

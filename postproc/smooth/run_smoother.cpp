@@ -7,6 +7,7 @@
 #include <span>
 
 #include "gcode/state/reason.h"
+#include "postproc/runs/run_cutting.h"
 #include "postproc/runs/run_path.h"
 #include "postproc/smooth/curve_forms.h"
 #include "postproc/smooth/repeated_runs.h"
@@ -473,18 +474,6 @@ std::optional<SmoothedRun> smooth_repeat(const Run& run, const RunContext& conte
   return result;
 }
 
-std::vector<TimedPiece> chain_with(const CutRun& cut, std::span<const RunState> pieces) {
-  std::vector<TimedPiece> chain;
-  chain.reserve(cut.run.points.size());
-  for (const RunState& piece : pieces) {
-    const Candidate* chosen = piece.chosen();
-    const std::vector<TimedPiece> moves =
-        chosen != nullptr ? chosen->moves : timed_pieces(cut.run, piece.first, piece.last);
-    chain.insert(chain.end(), moves.begin(), moves.end());
-  }
-  return chain;
-}
-
 namespace {
 
 // Seconds that a rewritten piece costs, summed over the settings of the override.
@@ -492,6 +481,23 @@ double cost_of(const RunState& piece) {
   Times cost = piece.chosen()->figures.times;
   cost.add(piece.smoothed.facts.scale.original.times, -1);
   return cost.programmed + cost.at_half + cost.at_one_and_half;
+}
+
+// Of the whole, with what was chosen for the pieces.
+Times times_with(const CutRun& cut, std::span<const RunState> pieces, const Machine& machine) {
+  ChainTimes times(machine, cut.path);
+  for (const RunState& piece : pieces) {
+    const Candidate* chosen = piece.chosen();
+    times.add(chosen != nullptr ? chosen->moves : timed_pieces(cut.run, piece.first, piece.last));
+  }
+  return times.finish();
+}
+
+// Of the whole as it was.
+Times times_before(const CutRun& cut, std::span<const RunState> pieces, const Machine& machine) {
+  ChainTimes times(machine, cut.path);
+  for (const RunState& piece : pieces) times.add(timed_pieces(cut.run, piece.first, piece.last));
+  return times.finish();
 }
 
 // What the whole has with its pieces as they are, and the scale of what it had.
@@ -523,7 +529,7 @@ WholeFigures figures_with(const CutRun& cut, std::span<const RunState> pieces,
     whole.after.distance /= std::sqrt(length);
   }
   before.times = cut.before;
-  whole.after.times = times_of(chain_with(cut, pieces), *options.machine, cut.path);
+  whole.after.times = times_with(cut, pieces, *options.machine);
   whole.scale.alone = cut.before.programmed;
   whole.scale.near = kCost.near * tolerance_of(cut.run, options.tolerance_mm);
   whole.scale.period = control_period(*options.machine);
@@ -559,22 +565,60 @@ bool is_rejected_by_proof(const RunState& work) {
   return why == kCrossesItself || why == kWrongSide || why == kTargetCannot || why == kNotProved;
 }
 
-void RunState::start_again(const Run& run, const SmoothOptions& options) {
+namespace {
+
+// Assigning an empty one would keep its memory.
+template <typename Container>
+void release(Container& container) {
+  Container().swap(container);
+}
+
+}  // namespace
+
+void RunState::surround(const Run& whole) {
+  const std::size_t from = first - std::min<std::size_t>(first, kNeighbourBlocks);
+  const std::size_t to = std::min(last + kNeighbourBlocks, whole.points.size() - 1);
+  context.lead = timed_pieces(whole, from, first);
+  context.tail = timed_pieces(whole, last, to);
+}
+
+void RunState::start_again(const Run& run, const SmoothOptions& options, const Run* whole) {
+  std::vector<std::string> refused;
+  for (const std::size_t i : std::span(selection.order).first(tried)) {
+    refused.push_back(std::move(smoothed.candidates[i].text.text));
+  }
+  if (whole != nullptr) surround(*whole);
   smoothed = smooth_run(run, context, options, CandidateScope::kAll);
-  smoothed.left_out = false;  // where these are rejected, too, nothing else is to be made
   selection = choose(smoothed, options);
-  drop_what_is_not_written();
+  std::erase_if(selection.order, [&](std::size_t i) {
+    return std::ranges::find(refused, smoothed.candidates[i].text.text) != refused.end();
+  });
   tried = 0;
-  reject_reason = {};
+  if (!selection.order.empty()) reject_reason = {};
+  drop_all_but(selection.order.size());
+  smoothed.left_out = false;  // where these are rejected, too, nothing else is to be made
 }
 
 void RunState::drop_what_is_not_written() {
-  for (std::size_t i = 0; i < smoothed.candidates.size(); ++i) {
-    smoothed.candidates[i].plan.reset();
-    if (std::ranges::find(selection.order, i) != selection.order.end()) continue;
-    smoothed.candidates[i].text.text = {};
-    smoothed.candidates[i].moves = {};
+  constexpr std::size_t kOfPiece = 2;
+  drop_all_but(cut_run ? kOfPiece : selection.order.size());
+}
+
+void RunState::drop_all_but(std::size_t best) {
+  if (selection.order.size() > best) {
+    selection.order.resize(best);
+    smoothed.left_out = true;
   }
+  for (std::size_t i = 0; i < smoothed.candidates.size(); ++i) {
+    Candidate& candidate = smoothed.candidates[i];
+    candidate.plan.reset();
+    if (std::ranges::find(selection.order, i) != selection.order.end()) continue;
+    release(candidate.text.text);
+    release(candidate.moves);
+  }
+  if (!cut_run) return;
+  release(context.lead);
+  release(context.tail);
 }
 
 void revert_costly_pieces(CutRun& cut, std::vector<RunState>& works, const SmoothOptions& options) {
@@ -584,8 +628,7 @@ void revert_costly_pieces(CutRun& cut, std::vector<RunState>& works, const Smoot
     if (piece.chosen() != nullptr) rewritten.push_back(&piece);
   }
   if (cut.before.programmed == 0) {
-    cut.before =
-        times_of(timed_pieces(cut.run, 0, cut.run.points.size() - 1), *options.machine, cut.path);
+    cut.before = times_before(cut, pieces, *options.machine);
   }
   const auto by_cost = [](const RunState* a, const RunState* b) {
     const double cost_a = cost_of(*a);

@@ -42,11 +42,18 @@ struct RunState {
   [[nodiscard]] const Candidate* chosen() const;
   void reject(std::string_view why);   // to its next candidate
   void give_up(std::string_view why);  // all of them
-  // Makes all candidates anew, also those that were left out: where none is left of the others. For
-  // short runs and pieces.
-  void start_again(const Run& run, const SmoothOptions& options);
-  // Texts and moves of candidates that were not chosen take room for nothing, nor do plans.
+  // Of a piece of `whole`: what is cut around it.
+  void surround(const Run& whole);
+  // Once it is smoothed: texts, moves and plans of candidates that will not be written take room
+  // for nothing. Of a piece, whose moves are held, so do those behind the second best one, and what
+  // is around it.
   void drop_what_is_not_written();
+  // Makes all candidates anew, also those that were left out or dropped, but for those that were
+  // refused: where none is left of the others. For short runs, and pieces of `whole`.
+  void start_again(const Run& run, const SmoothOptions& options, const Run* whole = nullptr);
+
+ private:
+  void drop_all_but(std::size_t best);
 };
 
 // Whether the proof left no candidate of it.
@@ -63,10 +70,6 @@ struct CutRun {  // into pieces, which follow each other in the list of works
   Times before = {};  // of the whole
   Times after = {};   // with the pieces that are rewritten
 };
-
-// The moves of the whole, with what was chosen for the pieces.
-[[nodiscard]] std::vector<TimedPiece> chain_with(const CutRun& cut,
-                                                 std::span<const RunState> pieces);
 
 // Pieces were chosen one by one, each beside unchanged neighbours. Gives back the original blocks
 // of those that cost most, are larger or are farther off, until nothing speaks against the run as a

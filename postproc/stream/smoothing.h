@@ -24,13 +24,14 @@ struct ProgramSink {
 
 struct StreamLimits {
   // From this size on a program is read twice and cut into windows where that can be, which takes
-  // some 30 MB; as one window it takes about 60 MB, and one of ten times the size ten times that.
-  std::size_t bytes_for_windows = std::size_t{1} << 21;
+  // some 30 MB, however long it is; as one window it takes 1 KB and more for each block.
+  std::size_t bytes_for_windows = std::size_t{1} << 18;
   WindowLimits windows = {};
 };
 
 // The result without its text, which went to the sink: the same bytes, report and diagnostics
-// whether the program is one window or many. It is one where it is short, for a lathe, with words
+// whether the program is one window or many, but for which forms are made of runs that are alike
+// (postproc/smooth/like_runs.h): that is found for each window. It is one where it is short, for a lathe, with words
 // of a profile, or where prescan finds no cut.
 //
 // Everything is done anew, and the sink is told to restart, where the new paths of two parts of a

@@ -17,6 +17,7 @@
 #include "postproc/stream/assembly.h"
 #include "postproc/stream/misread_arcs.h"
 #include "postproc/stream/smooth_result.h"
+#include "postproc/system/memory.h"
 
 namespace batten::postproc {
 
@@ -102,6 +103,7 @@ class WindowWork {
       done.scale.emplace(setting_.options.tolerance_mm);
       done.scale->add(part.program, part.meaning, runs.sections);
     }
+    give_back_free_memory();
     auto proof =
         prove_text(part, setting_.options, setting_.read_options, additions(), tell_round, runs);
     if (!proof) return;
@@ -444,7 +446,8 @@ class Prover {
     if (any && !cut_rejected_runs(part_, options_, tell_, runs_)) return false;
     for (RunState& work : runs_.works) {
       if (!is_rejected_by_proof(work) || !work.smoothed.left_out) continue;
-      work.start_again(std::get<Run>(runs_.sections[work.section].content), options_);
+      const Run* whole = work.cut_run ? &runs_.cut_runs[*work.cut_run].run : nullptr;
+      work.start_again(std::get<Run>(runs_.sections[work.section].content), options_, whole);
     }
     for (const std::size_t cut : std::exchange(cuts_to_time_, {})) {
       revert_costly_pieces(runs_.cut_runs[cut], runs_.works, options_);

@@ -41,59 +41,6 @@ constexpr std::size_t kMostPoints = 100;
 // Axes this near to Z belong to arcs of G17; printed programs give them exactly.
 constexpr double kAlongZ = 1e-6;
 
-class Joiner {
- public:
-  explicit Joiner(double tolerance) : tolerance_(tolerance) {}
-
-  // A line of `move`, or half of it.
-  void add_line(const Point3& from, const Point3& to, const JoinedPiece& move) {
-    if (!ends_.empty() && (move.feed != open_.feed || !can_reach(to))) flush();
-    if (ends_.empty()) {
-      start_ = from;
-      open_ = move;
-    }
-    ends_.push_back(to - start_);
-    end_ = to;
-    open_.last_piece = move.last_piece;
-  }
-
-  void add_other(const JoinedPiece& move) {
-    flush();
-    joined_.push_back(move);
-  }
-
-  std::vector<JoinedPiece> finish() {
-    flush();
-    return std::move(joined_);
-  }
-
- private:
-  [[nodiscard]] bool can_reach(const Point3& to) const {
-    if (ends_.size() > kMostPoints) return false;
-    const Vector3 way = to - start_;
-    if (!(way.norm() > geometry::kSamePlace)) return false;
-    const double square = way.squaredNorm();
-    return std::ranges::all_of(ends_, [&](const Vector3& end) {
-      const double t = std::clamp(way.dot(end) / square, 0.0, 1.0);
-      return (end - t * way).norm() <= tolerance_;
-    });
-  }
-
-  void flush() {
-    if (ends_.empty()) return;
-    open_.piece = Line{start_, end_};
-    joined_.push_back(open_);
-    ends_.clear();
-  }
-
-  double tolerance_;
-  Point3 start_ = Point3::Zero();
-  Point3 end_ = Point3::Zero();
-  JoinedPiece open_;           // what is joined so far, but for its line
-  std::vector<Vector3> ends_;  // of its lines, as ways from where it starts
-  std::vector<JoinedPiece> joined_;
-};
-
 // Distance of the middle of a bend from the middle of its chord.
 double rise_of(const PathPiece& bend) {
   const Point3 chord = (geometry::start_point(bend) + geometry::end_point(bend)) / 2;
@@ -121,60 +68,120 @@ CubicBezier joined(const CubicBezier& first, const CubicBezier& last) {
            last.control[3]}};
 }
 
+// Lines that are joined become one line. Flat arcs in a plane of constant Z whose middle is less
+// than `tolerance` (mm) off the chord become two lines, which then may be joined too. Rapids stay
+// as they are. A tolerance of 0 changes nothing. Cost: linear, since a joined move has some 100
+// parts.
+template <typename Take>
+class Joiner {
+ public:
+  // `take` gets the moves, in order.
+  Joiner(double tolerance, Take& take) : tolerance_(tolerance), take_(take) {}
+
+  // A piece of the program, or an arc of several.
+  void add(const TimedPiece& piece, std::uint32_t first, std::uint32_t last) {
+    const auto* line = std::get_if<Line>(&piece.piece);
+    if (!(tolerance_ > 0) || piece.rapid) {
+      add_other({piece, first, last});
+    } else if (line != nullptr) {
+      add_line(line->start, line->end, piece, first, last);
+    } else if (becomes_lines(piece.piece, tolerance_)) {
+      const Point3 middle = geometry::point_at(piece.piece, 0.5);
+      add_line(geometry::start_point(piece.piece), middle, piece, first, last);
+      add_line(middle, geometry::end_point(piece.piece), piece, first, last);
+    } else {
+      add_other({piece, first, last});
+    }
+  }
+
+  void finish() { flush(); }
+
+ private:
+  void add_line(const Point3& from, const Point3& to, const TimedPiece& piece, std::uint32_t first,
+                std::uint32_t last) {
+    if (!ends_.empty() && (piece.feed != open_.feed || !can_reach(to))) flush();
+    if (ends_.empty()) {
+      start_ = from;
+      open_ = {piece, first, last};
+    }
+    ends_.push_back(to - start_);
+    end_ = to;
+    open_.last_piece = last;
+  }
+
+  void add_other(const JoinedPiece& move) {
+    flush();
+    take_(move);
+  }
+
+  [[nodiscard]] bool can_reach(const Point3& to) const {
+    if (ends_.size() > kMostPoints) return false;
+    const Vector3 way = to - start_;
+    if (!(way.norm() > geometry::kSamePlace)) return false;
+    const double square = way.squaredNorm();
+    return std::ranges::all_of(ends_, [&](const Vector3& end) {
+      const double t = std::clamp(way.dot(end) / square, 0.0, 1.0);
+      return (end - t * way).norm() <= tolerance_;
+    });
+  }
+
+  void flush() {
+    if (ends_.empty()) return;
+    open_.piece = Line{start_, end_};
+    take_(open_);
+    ends_.clear();
+  }
+
+  double tolerance_;
+  Take& take_;
+  Point3 start_ = Point3::Zero();
+  Point3 end_ = Point3::Zero();
+  JoinedPiece open_;           // what is joined so far, but for its line
+  std::vector<Vector3> ends_;  // of its lines, as ways from where it starts
+};
+
 // Curves as the arcs that the interpreter makes of them: parts of a piece, or several pieces. The
-// rest stays.
-std::vector<JoinedPiece> curves_as_arcs(std::span<const TimedPiece> pieces) {
-  std::vector<JoinedPiece> arcs;
-  arcs.reserve(pieces.size());
-  double open = 0;  // of one arc, what the pieces so far are of the last one; 0: it is whole
+// rest stays. Both go to the joiner.
+template <typename Take>
+void add_with_curves_as_arcs(std::span<const TimedPiece> pieces, Joiner<Take>& joiner) {
+  JoinedPiece arc;  // of several pieces
+  double open = 0;  // what the pieces so far are of it; 0: there is none
+  const auto close = [&] {
+    if (open > 0) joiner.add(arc, arc.first_piece, arc.last_piece);
+    open = 0;
+  };
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     const TimedPiece& timed = pieces[i];
     const auto index = static_cast<std::uint32_t>(i);
     const auto* cubic = std::get_if<CubicBezier>(&timed.piece);
     if (cubic == nullptr) {
-      arcs.push_back({timed, index, index});
-      open = 0;
+      close();
+      joiner.add(timed, index, index);
       continue;
     }
     const double wanted = timed.arcs > 0 ? timed.arcs : kArcsPerBezier;
     if (wanted < 1 && timed.goes_on && open > 0 && open + wanted / 2 < 1) {
-      arcs.back().piece = joined(std::get<CubicBezier>(arcs.back().piece), *cubic);
-      arcs.back().last_piece = index;
+      arc.piece = joined(std::get<CubicBezier>(arc.piece), *cubic);
+      arc.last_piece = index;
       open += wanted;
       continue;
     }
-    const std::size_t before = arcs.size();
+    close();
     const double count = std::max(1.0, std::round(wanted));
     for (double k = 0; k < count; ++k) {
       JoinedPiece part{timed, index, index};
       part.piece = geometry::sub_piece(*cubic, k / count, (k + 1) / count);
-      if (geometry::length_of(part.piece) > 0) arcs.push_back(std::move(part));
-    }
-    open = wanted < 1 && arcs.size() > before ? wanted : 0;
-  }
-  return arcs;
-}
-
-// Lines that are joined become one line. Flat arcs in a plane of constant Z whose middle is less
-// than `tolerance` (mm) off the chord become two lines, which then may be joined too. Rapids stay
-// as they are. A tolerance of 0 changes nothing. Cost: linear, since a joined move has some 100
-// parts.
-std::vector<JoinedPiece> join_within(std::vector<JoinedPiece> moves, double tolerance) {
-  if (!(tolerance > 0)) return moves;
-  Joiner joiner(tolerance);
-  for (const JoinedPiece& move : moves) {
-    const auto* line = std::get_if<Line>(&move.piece);
-    if (!move.rapid && line != nullptr) {
-      joiner.add_line(line->start, line->end, move);
-    } else if (!move.rapid && line == nullptr && becomes_lines(move.piece, tolerance)) {
-      const Point3 middle = geometry::point_at(move.piece, 0.5);
-      joiner.add_line(geometry::start_point(move.piece), middle, move);
-      joiner.add_line(middle, geometry::end_point(move.piece), move);
-    } else {
-      joiner.add_other(move);
+      if (!(geometry::length_of(part.piece) > 0)) continue;
+      if (wanted < 1) {
+        arc = part;
+        open = wanted;
+      } else {
+        joiner.add(part, index, index);
+      }
     }
   }
-  return joiner.finish();
+  close();
+  joiner.finish();
 }
 
 // --- the planner ------------------------------------------------------------------------------
@@ -465,9 +472,9 @@ StretchChain stretches_in_one(std::span<const TimedPiece> pieces, const Machine&
       path.mode != gcode::PathMode::kExactStop && path.mode != gcode::PathMode::kExactPath;
   const double tolerance =
       joins ? path.naive_cam_tolerance.value_or(machine.naive_cam_tolerance) : 0;
-  for (const auto& move : linuxcnc::join_within(linuxcnc::curves_as_arcs(pieces), tolerance)) {
-    queue.add(move);
-  }
+  const auto take = [&queue](const linuxcnc::JoinedPiece& move) { queue.add(move); };
+  linuxcnc::Joiner joiner(tolerance, take);
+  linuxcnc::add_with_curves_as_arcs(pieces, joiner);
   return queue.finish(end);
 }
 

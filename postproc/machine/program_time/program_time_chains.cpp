@@ -87,6 +87,7 @@ void ChainCutter::use_part(ChainEnd end, std::size_t end_counted, const Use& use
   chain_.stretches = stretches_of(chain_.pieces, machine_, chain_.path, end, WithPositions::kYes);
   chain_.end_counted = static_cast<std::uint32_t>(end_counted);
   use(chain_);
+  chain_.stretches = StretchChain();
 }
 
 std::optional<ChainPlan> plan_of(const RunChain& chain, FeedPlanner asked) {

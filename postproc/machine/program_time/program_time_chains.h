@@ -58,8 +58,8 @@ class ChainCutter {
            const Use& use);
   void finish(const Use& use) { close(ChainEnd::kEndOfMotion, use); }
 
-  static constexpr std::uint32_t kMargin = 1024;
-  static constexpr std::size_t kMostPieces = std::size_t{8} * kMargin;
+  static constexpr std::uint32_t kMargin = 512;
+  static constexpr std::size_t kMostPieces = std::size_t{4} * kMargin;
 
  private:
   [[nodiscard]] double seconds_of(const ProgramStep& step) const;

@@ -57,6 +57,26 @@ Times times_of(std::span<const TimedPiece> chain, const Machine& machine,
   return times;
 }
 
+void ChainTimes::add(std::span<const TimedPiece> moves) {
+  constexpr std::size_t kAtOnce = 8192;
+  constexpr std::size_t kAround = 512;  // on either side of a cut
+  while (!moves.empty()) {
+    const std::size_t room = std::min(moves.size(), kAtOnce - open_.size());
+    open_.insert(open_.end(), moves.begin(), moves.begin() + static_cast<std::ptrdiff_t>(room));
+    moves = moves.subspan(room);
+    if (open_.size() < kAtOnce) continue;
+    times_ += times_of(open_, machine_, path_);
+    open_.erase(open_.begin(), open_.end() - 2 * std::ptrdiff_t{kAround});
+    times_.add(times_of(open_, machine_, path_), -1);
+  }
+}
+
+Times ChainTimes::finish() {
+  times_ += times_of(open_, machine_, path_);
+  open_.clear();
+  return times_;
+}
+
 RunTimes::RunTimes(const RunContext& context, const Machine& machine, WorthAPlan worth)
     : context_(context), machine_(machine), worth_(worth), around_(of_neighbours()) {}
 

@@ -14,6 +14,25 @@ namespace batten::postproc {
 [[nodiscard]] Times times_of(std::span<const TimedPiece> chain, const Machine& machine,
                              const gcode::PathControl& path, WorthAPlan worth = kAmongForms);
 
+// Of a long chain that need not be held: part by part. The moves about a cut are timed in both of
+// its parts, and by themselves to be taken off again, so that what is left is the time of the whole
+// as far as the machine looks ahead, and brakes, over no more of them.
+class ChainTimes {
+ public:
+  // All must live as long.
+  ChainTimes(const Machine& machine, const gcode::PathControl& path)
+      : machine_(machine), path_(path) {}
+
+  void add(std::span<const TimedPiece> moves);  // that follow those before
+  [[nodiscard]] Times finish();
+
+ private:
+  const Machine& machine_;
+  const gcode::PathControl& path_;
+  std::vector<TimedPiece> open_;  // not counted yet, and what overlaps the part before
+  Times times_;
+};
+
 // Of a run between its neighbours (RunContext). From rest to rest where it has none.
 class RunTimes {
  public:

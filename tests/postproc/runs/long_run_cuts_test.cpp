@@ -126,6 +126,35 @@ TEST(LongRunCuts, AreTheSameForAnyParts) {
   EXPECT_GE(all, 100U);
 }
 
+// A run that is not long, but not short, is cut at its sharp corners alone, into parts of half as
+// many motions and more as it may have uncut.
+TEST(LongRunCuts, OfRunsThatAreNotLongAreSharpCorners) {
+  constexpr LongRunLimits kCorners = {
+      .whole_at_most = 2000, .uncut_at_most = 300, .shortest = 100, .longest = 200};
+  std::size_t all = 0;
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    SCOPED_TRACE(seed);
+    const ReadText read(RandomLines(seed, false).make(1500));
+    const auto cuts = find_long_runs(read.program, read.meaning, kCorners, {}).cuts;
+    const auto& motions = read.meaning.motions;
+    std::uint32_t before = 3;  // the first block of the run
+    for (const std::uint32_t block : cuts) {
+      const auto motion = static_cast<std::size_t>(read.meaning.blocks[block].motion);
+      const geometry::Vector3 in =
+          motions[motion - 1].piece.end() - motions[motion - 1].piece.start();
+      const geometry::Vector3 out = motions[motion].piece.end() - motions[motion].piece.start();
+      EXPECT_LT(in.normalized().dot(out.normalized()), 0.5) << "60 degrees and more";
+      EXPECT_GE(block - before, kCorners.uncut_at_most / 2);
+      before = block;
+    }
+    EXPECT_GE(read.program.blocks.size() - 2 - before, kCorners.uncut_at_most / 2);
+    all += cuts.size();
+    const ReadText shorter(RandomLines(seed, false).make(299));
+    EXPECT_TRUE(find_long_runs(shorter.program, shorter.meaning, kCorners, {}).cuts.empty());
+  }
+  EXPECT_GE(all, 40U);
+}
+
 // What stands on both sides of a cut is a run: no plunge, nothing that is copied.
 TEST(LongRunCuts, HaveRunsOnBothSides) {
   for (unsigned seed = 0; seed < 20; ++seed) {

@@ -174,6 +174,52 @@ TEST(PartProof, TellsOfAllPiecesThatAreWrongAtOnce) {
   EXPECT_LE(part.rounds(), most + 1);
 }
 
+// Their moves would take room for nothing: where the proof refuses two, the others are made anew.
+TEST(PartProof, HasTwoCandidatesOfAPieceAtHand) {
+  SmoothedPart part(wave_program({.lines = 1500, .height = 0.5, .length = 6}));
+  part.spoil(part.work().selection.order.size());
+  ASSERT_TRUE(part.proved().proved);
+  ASSERT_GE(part.runs().works.size(), 3U);
+  std::size_t left_out = 0;
+  for (std::size_t i = 0; i < part.runs().works.size(); ++i) {
+    const RunState& piece = part.work(i);
+    EXPECT_LE(piece.selection.order.size(), 2U);
+    EXPECT_EQ(piece.context.lead.capacity() + piece.context.tail.capacity(), 0U);
+    for (std::size_t k = 0; k < piece.smoothed.candidates.size(); ++k) {
+      const Candidate& candidate = piece.smoothed.candidates[k];
+      const bool is_kept = std::ranges::count(piece.selection.order, k) > 0;
+      EXPECT_EQ(candidate.text.text.empty(), !is_kept);
+      EXPECT_TRUE(is_kept || candidate.text.text.capacity() == std::string().capacity());
+      EXPECT_EQ(candidate.moves.capacity() > 0, is_kept);
+    }
+    if (piece.selection.order.size() == 2 && piece.smoothed.left_out) ++left_out;
+  }
+  ASSERT_GE(left_out, 1U);
+  for (std::size_t i = 0; i < part.runs().works.size(); ++i) {
+    part.spoil(part.work(i).selection.order.size(), i);
+  }
+  const ProvedText done = part.proved();
+  EXPECT_TRUE(done.proved);
+  EXPECT_FALSE(done.unchanged);
+  EXPECT_EQ(done.text.find(kElsewhere), std::string::npos);
+}
+
+// What was refused once is not tried again.
+TEST(PartProof, DoesNotTryTheSameTwice) {
+  SmoothedPart part(kTwoForms);
+  part.make_all();
+  const RunState& work = part.work();
+  const std::size_t all = work.selection.order.size();
+  ASSERT_GE(all, 3U);
+  const std::string best = work.smoothed.candidates[work.selection.order.at(0)].text.text;
+  part.work().reject(gcode::reason::kNotProved);
+  part.make_all();
+  EXPECT_EQ(work.selection.order.size(), all - 1);
+  for (const std::size_t i : work.selection.order) {
+    EXPECT_NE(work.smoothed.candidates[i].text.text, best);
+  }
+}
+
 TEST(PartProof, KeepsTheBlocksWhereEveryCandidateIsWrong) {
   SmoothedPart part(kTwoForms);
   part.make_all();

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <span>
 #include <tuple>
 #include <utility>
 
@@ -50,6 +52,27 @@ TEST(RunTimes, FollowTheOverrideAsFarAsTheMachineCan) {
     std::vector<TimedPiece> overridden = motions;
     for (TimedPiece& each : overridden) each.feed *= feed_override;
     EXPECT_EQ(cutting_time(overridden, machine, gcode::PathMode::kBlending), expected);
+  }
+}
+
+// Moves about a cut are timed thrice, and count once. LinuxCNC joins lines from where a part begins.
+TEST(ChainTimes, AreThoseOfTheWholeChain) {
+  for (const char* name : {"linuxcnc-fast", "linuxcnc", "router"}) {
+    const Machine& machine = *find_machine(name);
+    const OneRun run(wave_program({.lines = 19000, .height = 2, .length = 600}));
+    const std::vector<TimedPiece> motions = timed_pieces(run.run(), 0, 19000);
+    const gcode::PathControl path = gcode::PathMode::kBlending;
+    const Times whole = times_of(motions, machine, path);
+    for (const std::size_t at_once : {std::size_t{1}, std::size_t{700}, motions.size()}) {
+      ChainTimes times(machine, path);
+      for (std::size_t i = 0; i < motions.size(); i += at_once) {
+        times.add(std::span(motions).subspan(i, std::min(at_once, motions.size() - i)));
+      }
+      const Times parts = times.finish();
+      EXPECT_NEAR(parts.programmed, whole.programmed, 1e-4 * whole.programmed) << name;
+      EXPECT_NEAR(parts.at_half, whole.at_half, 1e-4 * whole.at_half) << name;
+      EXPECT_NEAR(parts.at_one_and_half, whole.at_one_and_half, 1e-4 * whole.at_one_and_half);
+    }
   }
 }
 
