@@ -1,9 +1,10 @@
 #include "geometry/distance/joints.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
-#include <functional>
-#include <utility>
+#include <cstdint>
+#include <optional>
 
 namespace batten::geometry {
 
@@ -13,43 +14,71 @@ namespace {
 // smoothed gets shorter by, and less than a loop.
 constexpr double kLonger = 0.1;
 
-std::size_t hash_of(const Point3& place) {
-  const std::hash<double> hash;
-  std::size_t sum = 0;
-  for (const double mm : place) sum = sum * 31 + hash(mm + 0.0);  // -0 is 0
-  return sum;
-}
+// The vertices of a path by their places: open addressing, linear probing.
+class PlaceTable {
+ public:
+  explicit PlaceTable(std::span<const PassedPlace> places)
+      : places_(places), slots_(std::bit_ceil(2 * places.size() + 1), kNone) {
+    for (std::uint32_t i = 0; i < places.size(); ++i) {
+      std::size_t slot = slot_of(places[i].place);
+      while (slots_[slot] != kNone) slot = next(slot);
+      slots_[slot] = i;
+    }
+  }
+
+  // The first vertex in that place, of those that `takes` takes; nothing where there is none.
+  template <typename Takes>
+  [[nodiscard]] std::optional<std::size_t> first_at(const Point3& place, const Takes& takes) const {
+    for (std::size_t slot = slot_of(place); slots_[slot] != kNone; slot = next(slot)) {
+      const std::uint32_t i = slots_[slot];
+      if (places_[i].place == place && takes(i)) return i;
+    }
+    return std::nullopt;
+  }
+
+ private:
+  static constexpr std::uint32_t kNone = UINT32_MAX;
+
+  [[nodiscard]] std::size_t next(std::size_t slot) const {
+    return (slot + 1) & (slots_.size() - 1);
+  }
+
+  [[nodiscard]] std::size_t slot_of(const Point3& place) const {
+    constexpr std::uint64_t kMix = 0x9E3779B97F4A7C15;  // 2^64 over the golden ratio
+    std::uint64_t sum = 0;
+    for (const double mm : place) {
+      sum = (sum ^ std::bit_cast<std::uint64_t>(mm + 0.0)) * kMix;  // -0 is 0
+      sum ^= sum >> 29;
+    }
+    return sum & (slots_.size() - 1);
+  }
+
+  std::span<const PassedPlace> places_;
+  std::vector<std::uint32_t> slots_;
+};
 
 }  // namespace
 
 std::vector<Joint> joints_of(std::span<const PassedPlace> a, std::span<const PassedPlace> b,
                              std::size_t apart) {
-  std::vector<std::pair<std::size_t, std::size_t>> places;  // of `a`: hash and index
-  places.reserve(a.size());
-  for (std::size_t i = 0; i < a.size(); ++i) places.emplace_back(hash_of(a[i].place), i);
-  std::ranges::sort(places);
+  const PlaceTable places(a);
   std::vector<Joint> joints;
   Joint last;
   double length_a = 0;  // up to the last one
   double length_b = 0;
   for (std::size_t k = 0; k < b.size(); ++k) {
-    const std::size_t hash = hash_of(b[k].place);
-    // The first of them that is behind the last joint.
-    for (auto at = std::ranges::lower_bound(places, std::pair(hash, last.a));
-         at != places.end() && at->first == hash; ++at) {
-      const PassedPlace& other = a[at->second];
-      const double on_a = other.length - length_a;
-      const double on_b = b[k].length - length_b;
-      if (std::abs(on_a - on_b) > kLonger * std::max(on_a, on_b)) continue;
-      if (other.place != b[k].place) continue;
-      const Joint joint{at->second + 1, k + 1};
-      if (joint.a - last.a < apart && joint.b - last.b < apart) break;
-      joints.push_back(joint);
-      last = joint;
-      length_a = other.length;
-      length_b = b[k].length;
-      break;
-    }
+    const double on_b = b[k].length - length_b;
+    const auto at = places.first_at(b[k].place, [&](std::size_t i) {
+      const double on_a = a[i].length - length_a;
+      return i >= last.a && std::abs(on_a - on_b) <= kLonger * std::max(on_a, on_b);
+    });
+    if (!at) continue;
+    const Joint joint{*at + 1, k + 1};
+    if (joint.a - last.a < apart && joint.b - last.b < apart) continue;
+    joints.push_back(joint);
+    last = joint;
+    length_a = a[*at].length;
+    length_b = b[k].length;
   }
   return joints;
 }

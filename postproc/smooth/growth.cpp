@@ -97,12 +97,14 @@ bool is_eaten_by_comment(const std::vector<RunState>& works, const PartSums& sum
 class Reverter {
  public:
   Reverter(std::vector<RunState>& works, std::vector<CutRun>& cut_runs,
-           const SmoothOptions& options)
+           const SmoothOptions& options, const std::optional<PartSums>& beside)
       : works_(works),
         cut_runs_(cut_runs),
         options_(options),
         weights_(weights_of(options.prefer)),
-        sums_(postproc::sums_of(works, cut_runs, options)) {}
+        sums_(postproc::sums_of(works, cut_runs, options)) {
+    if (beside) sums_ += *beside;
+  }
 
   // Returns whether anything was changed: then the times of runs in pieces are others.
   bool revert() {
@@ -179,6 +181,11 @@ PartSums& PartSums::operator+=(const PartSums& other) {
   return *this;
 }
 
+bool PartSums::grow() const {
+  return std::ranges::any_of(kMeasures,
+                             [&](const Measure& measure) { return change.*measure.amount > 0; });
+}
+
 PartSums sums_of(const std::vector<RunState>& works, const std::vector<CutRun>& cut_runs,
                  const SmoothOptions& options) {
   PartSums sums;
@@ -202,10 +209,10 @@ bool is_worse(const PartSums& sums, const SmoothOptions& options) {
 }
 
 void revert_growth(std::vector<RunState>& works, std::vector<CutRun>& cut_runs,
-                   const SmoothOptions& options) {
-  while (Reverter(works, cut_runs, options).revert()) {
+                   const SmoothOptions& options, const std::optional<PartSums>& beside) {
+  while (Reverter(works, cut_runs, options, beside).revert()) {
   }
-  const bool asked_for = options.output != Form::kAuto;
+  const bool asked_for = options.output != Form::kAuto || beside;
   if (asked_for || !is_eaten_by_comment(works, sums_of(works, cut_runs, options), options)) return;
   for (RunState& work : works) {
     if (work.chosen() != nullptr) work.give_up(gcode::reason::kNoGain);

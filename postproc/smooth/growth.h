@@ -1,6 +1,7 @@
 // What a program gains as a whole, and what that costs it.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "postproc/options/options.h"
@@ -24,6 +25,7 @@ struct PartSums {
   RunSums change;
 
   PartSums& operator+=(const PartSums& other);
+  [[nodiscard]] bool grow() const;  // in blocks, bytes or distance
 };
 
 // Of all runs but those whose form the user asks for by name.
@@ -38,8 +40,9 @@ struct PartSums {
 // thousandth of the program. Where all runs together are worse, those that gain the least for what
 // they grow change to a candidate that does not, or keep their blocks. All keep them where all
 // that is won is less size, in blocks and bytes by halves, than the comment takes that says that
-// the program was smoothed, unless a form is asked for by name.
+// the program was smoothed, unless a form is asked for by name. `beside`: other runs, which stay as
+// they are and have that comment, and are not worse together.
 void revert_growth(std::vector<RunState>& works, std::vector<CutRun>& cut_runs,
-                   const SmoothOptions& options);
+                   const SmoothOptions& options, const std::optional<PartSums>& beside = {});
 
 }  // namespace batten::postproc

@@ -116,7 +116,7 @@ class PartSmoother {
       if (!work.cut_run && work.selection.reason.empty()) whole.push_back(i);
     }
     if (!smooth_works(whole) || !cut_what_disappoints(0)) return false;
-    if (!part_.window) revert_growth(runs_.works, runs_.cut_runs, options_);
+    revert_growth_of(part_, options_, runs_);
     return true;
   }
 
@@ -432,6 +432,11 @@ void keep_as_smoothed(PartRuns& runs) {
 RunMemo& RunMemos::of(const Section& section) {
   const std::scoped_lock lock(looking_);
   return memos_[{section.first_block, section.last_block}];
+}
+
+void revert_growth_of(const ProgramPart& part, const SmoothOptions& options, PartRuns& runs) {
+  if (part.window && !runs.beside) return;
+  revert_growth(runs.works, runs.cut_runs, options, runs.beside);
 }
 
 bool smooth_runs(const ProgramPart& part, const SmoothOptions& options,

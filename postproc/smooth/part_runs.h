@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -14,6 +15,7 @@
 #include "postproc/options/options.h"
 #include "postproc/runs/run_cutting.h"
 #include "postproc/runs/section.h"
+#include "postproc/smooth/growth.h"
 #include "postproc/smooth/run_smoother.h"
 
 namespace batten::postproc {
@@ -36,6 +38,9 @@ struct PartRuns {
   std::vector<RunState> works;  // of the sections that are runs, in order
   std::size_t moves = 0;        // of all runs
   std::vector<CutRun> cut_runs;
+  // Of a window: the runs before it, with which it must not be worse; nothing: others may make up
+  // for what is larger or farther off here.
+  std::optional<PartSums> beside = {};
   std::vector<gcode::Diagnostics> notes;  // on the bands of the runs (postproc/runs/band_notes.h)
 };
 
@@ -52,6 +57,9 @@ struct PartRuns {
 
 // Every run is kept, since the program was smoothed before.
 void keep_as_smoothed(PartRuns& runs);
+
+// Where the whole, or a window beside the runs before it, is worse (revert_growth).
+void revert_growth_of(const ProgramPart& part, const SmoothOptions& options, PartRuns& runs);
 
 // Called with the share of the work that is done, 0..1; false stops it.
 using ProgressCallback = std::function<bool(double)>;

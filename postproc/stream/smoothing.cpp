@@ -180,7 +180,7 @@ class Smoothing {
     if (!read()) return refused();
     while (true) {
       const WindowOutcome outcome = smooth_all();
-      const bool worse = outcome == WindowOutcome::kDone && is_worse_as_a_whole();
+      const bool worse = outcome == WindowOutcome::kDone && is_worse_in_windows(sums_);
       if (outcome == WindowOutcome::kDone && !worse && !copy_where_parts_cross()) return finished();
       if (outcome == WindowOutcome::kStopped || !sink_.restart()) return refused();
       const bool as_one = outcome == WindowOutcome::kNotProvedAlone || worse;
@@ -308,19 +308,30 @@ class Smoothing {
                      make_filter<Made, void>(filter_mode::serial_in_order, append));
   }
 
-  WindowDone smooth(std::size_t window, const Guess& before) {
+  WindowDone smooth(std::size_t window, const Guess& before,
+                    const std::optional<PartSums>& beside = {}) {
     const WindowPlace& place = facts_.windows[window];
-    return smooth_window(setting_, place, before, [&](double share) {
+    const auto tell = [&](double share) {
       return outcome_ == WindowOutcome::kDone && progress_.report(window, place, share);
-    });
+    };
+    return smooth_window(setting_, place, before, tell, beside);
   }
 
   // One after the other, in order. What was made for another begin than the window has is made
-  // anew: nothing that was guessed is believed.
+  // anew: nothing that was guessed is believed. So is a window with which those so far are larger
+  // or farther off for too little.
   WindowOutcome take(std::size_t window, WindowDone made) {
     if (made.outcome == WindowOutcome::kStopped) return made.outcome;
     if (!was_made_for_its_begin(made)) {
       made = smooth(window, [this](const TextBefore&) { return known_; });
+    }
+    PartSums sums = sums_;
+    sums += made.sums;
+    const bool may_mend = source_.text().size() >= limits_.bytes_for_mending;
+    const bool grows = made.outcome == WindowOutcome::kDone && made.sums.grow();
+    if (may_mend && grows && is_worse_in_windows(sums)) {
+      made = smooth(
+          window, [this](const TextBefore&) { return known_; }, sums_);
     }
     if (made.outcome != WindowOutcome::kDone) return made.outcome;
     const gcode::SourceSpan span{facts_.windows[window].begin, facts_.windows[window].end};
@@ -361,9 +372,9 @@ class Smoothing {
     return same_before(made.before, begin);
   }
 
-  // Windows know nothing of each other; the whole reverts what is not worth it by itself.
-  [[nodiscard]] bool is_worse_as_a_whole() const {
-    return !setting_.whole && is_worse(sums_, options_);
+  // The whole reverts what is not worth it by itself.
+  [[nodiscard]] bool is_worse_in_windows(const PartSums& sums) const {
+    return !setting_.whole && is_worse(sums, options_);
   }
 
   // Whether parts of long runs cross each other where they did not: then more is to be copied.

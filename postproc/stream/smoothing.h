@@ -27,6 +27,9 @@ struct StreamLimits {
   // some 30 MB, however long it is; as one window it takes 1 KB and more for each block.
   std::size_t bytes_for_windows = std::size_t{1} << 18;
   WindowLimits windows = {};
+  // From this size on a window with which those so far are larger or farther off for too little is
+  // made again; a smaller program is smoothed as a whole then, which keeps less of it back.
+  std::size_t bytes_for_mending = std::size_t{1} << 18;
 };
 
 // The result without its text, which went to the sink: the same bytes, report and diagnostics

@@ -32,8 +32,9 @@ bool knows_the_same(const TextBefore& a, const TextBefore& b) {
 
 class WindowWork {
  public:
-  WindowWork(const WindowSetting& setting, const WindowPlace& place)
-      : setting_(setting), place_(place), at_(place.from) {}
+  WindowWork(const WindowSetting& setting, const WindowPlace& place,
+             const std::optional<PartSums>& beside)
+      : setting_(setting), place_(place), beside_(beside), at_(place.from) {}
 
   WindowDone run(const Guess& guess, const ProgressCallback& tell) {
     WindowDone done;
@@ -91,6 +92,7 @@ class WindowWork {
   void smooth(const ProgressCallback& tell, WindowDone& done) {
     const ProgramPart& part = *done.part;
     PartRuns runs = find_runs(part, setting_.options, setting_.long_runs, setting_.facts);
+    runs.beside = beside_;
     const ProgressCallback tell_runs = [&](double share) { return tell(share * kAfterRuns); };
     const ProgressCallback tell_round = [&](double) { return tell(kAfterRuns); };
     if (setting_.was_smoothed) {
@@ -103,7 +105,7 @@ class WindowWork {
       done.scale.emplace(setting_.options.tolerance_mm);
       done.scale->add(part.program, part.meaning, runs.sections);
     }
-    give_back_free_memory();
+    if (!part.window) give_back_free_memory();
     auto proof =
         prove_text(part, setting_.options, setting_.read_options, additions(), tell_round, runs);
     if (!proof) return;
@@ -158,6 +160,7 @@ class WindowWork {
 
   const WindowSetting& setting_;
   const WindowPlace& place_;
+  const std::optional<PartSums>& beside_;
   ReadingPlace at_;  // what is read up to here
   NewTextBefore before_;
   TextBefore old_after_;
@@ -166,8 +169,9 @@ class WindowWork {
 }  // namespace
 
 WindowDone smooth_window(const WindowSetting& setting, const WindowPlace& place,
-                         const Guess& before, const ProgressCallback& tell) {
-  return WindowWork(setting, place).run(before, tell);
+                         const Guess& before, const ProgressCallback& tell,
+                         const std::optional<PartSums>& beside) {
+  return WindowWork(setting, place, beside).run(before, tell);
 }
 
 bool same_before(const NewTextBefore& a, const NewTextBefore& b) {
@@ -217,7 +221,7 @@ class Prover {
       if (!tell_(0)) return std::nullopt;
       if (!round.proved && take_back(round)) {
         if (!smooth_rejected()) return std::nullopt;
-        if (!part_.window) revert_growth(runs_.works, runs_.cut_runs, options_);
+        revert_growth_of(part_, options_, runs_);
         continue;
       }
       if (round.unchanged) round.near_edges = near_edges(std::nullopt);

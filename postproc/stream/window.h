@@ -108,9 +108,11 @@ struct WindowDone {
 using Guess = std::function<NewTextBefore(const TextBefore& old_before)>;
 
 // A window read from its position, smoothed and proved. `tell` gets the share of the work that is
-// done. What is wrong between it and others shows as one of several that is not proved.
+// done. What is wrong between it and others shows as one of several that is not proved. `beside`:
+// as PartRuns has it.
 [[nodiscard]] WindowDone smooth_window(const WindowSetting& setting, const WindowPlace& place,
-                                       const Guess& before, const ProgressCallback& tell);
+                                       const Guess& before, const ProgressCallback& tell,
+                                       const std::optional<PartSums>& beside = {});
 
 // Whether what is made for one of them is what is made for the other.
 [[nodiscard]] bool same_before(const NewTextBefore& a, const NewTextBefore& b);

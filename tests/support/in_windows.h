@@ -33,7 +33,8 @@ struct InWindows {
 };
 
 inline InWindows in_windows(const std::string& text, const SmoothOptions& options,
-                            const WindowLimits& limits) {
+                            const WindowLimits& limits,
+                            std::size_t bytes_for_mending = StreamLimits{}.bytes_for_mending) {
   InWindows done;
   const ProgramSink sink = {[&](std::string_view part) {
                               done.text += part;
@@ -47,7 +48,7 @@ inline InWindows in_windows(const std::string& text, const SmoothOptions& option
                               return true;
                             }};
   const gcode::SourceText source("part.nc", text);
-  done.result = smooth_program(source, options, sink, {}, {0, limits});
+  done.result = smooth_program(source, options, sink, {}, {0, limits, bytes_for_mending});
   return done;
 }
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <utility>
 #include <vector>
 
 #include "gcode/state/reason.h"
@@ -94,6 +95,24 @@ TEST_F(Growth, OfTheDistanceGoesAsThatOfBlocksDoes) {
   add({});
   EXPECT_EQ(settled(), (Chosen{-1, -1, -1}));
   EXPECT_EQ(works_[0].reject_reason, gcode::reason::kFarther);
+}
+
+// Runs of windows before it pay, too, or are paid for; they stay as they are.
+TEST_F(Growth, OfAWindowIsMeasuredWithTheRunsBeforeIt) {
+  const PartSums as_it_was{1000, {100, 1000, 10000, 0.016}, {}};
+  PartSums smaller = as_it_was;
+  smaller.change.blocks = -30;
+  PartSums larger = as_it_was;
+  larger.change.blocks = 30;
+  larger.change.time = -1.01;  // a percent of its own time, and less of both
+  for (const auto& [beside, chosen] :
+       {std::pair{as_it_was, -1}, std::pair{smaller, 0}, std::pair{larger, -1}}) {
+    works_.clear();
+    add({figures(9.95, 120, 1000, 0.004)});
+    add({});
+    revert_growth(works_, cut_runs_, options_for("linuxcnc"), beside);
+    EXPECT_EQ(works_[0].chosen() != nullptr, chosen == 0) << beside.change.blocks;
+  }
 }
 
 // Its comment is a block of 35 bytes. Of 1000 bytes they are less than a run may grow.

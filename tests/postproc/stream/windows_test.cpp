@@ -98,6 +98,27 @@ TEST(Windows, AreMadeOfPlainPassesAndSayOnceThatTheProgramIsSmoothed) {
   EXPECT_EQ(windows.text.find("Batten: smoothed within", first + 1), std::string::npos);
 }
 
+// A wave that is 4 % faster in half as many blocks again is worth that for itself, but not beside
+// what takes twenty times as long and stays as it is.
+TEST(Windows, AreNotLargerTogetherForTooLittle) {
+  const Wave fast{.lines = 80, .step = 0.3, .height = 1, .length = 6, .feed = 6000};
+  const std::string wave = "G0 Z5\nG0 X0 Y0\nG1 Z-1 F300\n" + joined(wave_lines(fast), "\n");
+  std::string slow = "G0 Z5\nG0 X0 Y0\nG1 Z-1 F300\n";
+  for (int i = 1; i <= 40; ++i) slow += fmt::format("G1 X{} Y{} F600\n", i, 2 * (i % 2));
+  const SmoothOptions options = options_for("linuxcnc");
+  const std::string end = "G0 Z5\nM2\n";
+  const InWindows alone = in_windows(kHead + wave + end, options, 1);
+  EXPECT_GT(alone.result.blocks_out, alone.result.blocks_in + 20);
+  for (const auto& [text, restarts] :
+       {std::pair{kHead + slow + wave + end, 0U}, std::pair{kHead + wave + slow + end, 1U}}) {
+    const InWindows windows = in_windows(text, options, WindowLimits{.least_blocks = 1}, 0);
+    EXPECT_EQ(windows.restarts, restarts);
+    EXPECT_EQ(windows.cut(), restarts == 0);
+    EXPECT_LE(windows.result.blocks_out, windows.result.blocks_in + 1);
+    EXPECT_EQ(in_windows(text, options, 1).restarts, 1U) << "of a short program";
+  }
+}
+
 TEST(Windows, KeepAProgramThatWasSmoothedWhereverThatStands) {
   const std::string text = passes_of_windows(kHead, "M5\n(Batten: smoothed within 0.01 mm)\nM30\n");
   const InWindows windows = in_windows(text, options_for("linuxcnc"), 1);
