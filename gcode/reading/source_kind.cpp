@@ -12,6 +12,7 @@
 #include "gcode/siemens/names.h"
 #include "gcode/text/characters.h"
 #include "gcode/text/line_cursor.h"
+#include "gcode/text/source_parts.h"
 
 namespace batten::gcode {
 namespace {
@@ -34,30 +35,6 @@ constexpr std::array kFamilies = {
     SourceFamily{SourceKind::kHeidenhain, "heidenhain", "Heidenhain Klartext", "heidenhain",
                  Language::kKlartext, 0},
 };
-
-// Bytes that are looked at before they are given back: a long program is not held for its marks.
-constexpr std::size_t kAtOnce = std::size_t{1} << 23;
-
-// Behind a line feed where there is one, so that lines are whole.
-std::size_t end_of_part(std::string_view text, std::size_t begin) {
-  if (text.size() - begin <= kAtOnce) return text.size();
-  const std::size_t feed = text.rfind('\n', begin + kAtOnce);
-  return feed == std::string_view::npos || feed < begin ? text.size() : feed + 1;
-}
-
-// Calls `use` for each part of the text until it says false.
-template <typename Use>
-void for_each_part(const SourceText& source, const Use& use) {
-  const std::size_t size = source.text().size();
-  bool goes_on = true;
-  for (std::size_t begin = 0; begin < size && goes_on;) {
-    const std::size_t end = end_of_part(source.text(), begin);
-    const SourceSpan part{static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)};
-    goes_on = use(part);
-    source.release_pages(part);
-    begin = end;
-  }
-}
 
 bool has_siemens_names(const SourceText& source) {
   bool found = false;

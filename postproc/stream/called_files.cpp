@@ -17,6 +17,7 @@
 #include "gcode/state/source_marks.h"
 #include "gcode/text/characters.h"
 #include "gcode/text/line_cursor.h"
+#include "gcode/text/source_parts.h"
 #include "postproc/convert/conversion.h"
 #include "postproc/text/words.h"
 
@@ -109,16 +110,20 @@ class CalledFileReader {
   CalledFiles read(const gcode::SourceText& source) {
     std::set<std::string> within;
     std::vector<std::string> calls;
-    gcode::LineCursor lines(source.text());
-    while (const auto line = lines.next()) {
-      const std::string_view text = source.text().substr(line->begin, line->text_end - line->begin);
-      if (!may_say_program(text, reading_.language)) continue;
-      gcode::Diagnostics ignored;
-      const gcode::Program alone =
-          gcode::parse(gcode::SourceText("", std::string(text)), reading_, ignored);
-      note_calls(alone, calls);
-      within.merge(names_within(alone));
-    }
+    gcode::for_each_part(source, [&](gcode::SourceSpan part) {
+      gcode::LineCursor lines(source.text(part));
+      while (const auto line = lines.next()) {
+        const std::string_view text =
+            source.text(part).substr(line->begin, line->text_end - line->begin);
+        if (!may_say_program(text, reading_.language)) continue;
+        gcode::Diagnostics ignored;
+        const gcode::Program alone =
+            gcode::parse(gcode::SourceText("", std::string(text)), reading_, ignored);
+        note_calls(alone, calls);
+        within.merge(names_within(alone));
+      }
+      return true;
+    });
     for (const std::string& name : calls) look_for(name, within);
     drop_what_stands_elsewhere();
     if (!programs_.empty()) {
