@@ -185,7 +185,8 @@ double read_within(const Part& part) {
 
 // Paths of more pieces are compared part by part, which takes less memory. Each part is so long
 // that what its ends cost is little.
-constexpr std::size_t kPiecesAtOnce = 256;
+constexpr std::size_t kPiecesAtOnce = 4096;
+constexpr std::size_t kPiecesOfPart = 256;
 
 std::vector<geometry::PassedPlace> passed_places(const Part& part) {
   constexpr double kNowhere = std::numeric_limits<double>::quiet_NaN();
@@ -212,9 +213,9 @@ std::vector<PartPair> parts_between_joints(const PartPair& pair) {
     old_from = old_end;
     new_from = new_end;
   };
-  if (std::max(before.size(), after.size()) > 2 * kPiecesAtOnce) {
+  if (std::max(before.size(), after.size()) > kPiecesAtOnce) {
     for (const geometry::Joint& joint :
-         geometry::joints_of(passed_places(before), passed_places(after), kPiecesAtOnce)) {
+         geometry::joints_of(passed_places(before), passed_places(after), kPiecesOfPart)) {
       add_up_to(before.begin + joint.a, after.begin + joint.b);
     }
   }
