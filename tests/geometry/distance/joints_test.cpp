@@ -86,11 +86,11 @@ TEST(Joints, AreNotALapApart) {
     const double angle = 2 * std::acos(-1.0) * (i % 100) / 100;
     ring.emplace_back(std::cos(angle), std::sin(angle), 0);
   }
-  std::vector<Point3> first_left_out = ring;
-  first_left_out.erase(first_left_out.begin() + 20);
-  for (const Joint& joint : joints_of(passed(ring), passed(first_left_out), 5)) {
-    EXPECT_LE(joint.a - joint.b, 1U);
-  }
+  std::vector<Point3> some_left_out = ring;
+  some_left_out.erase(some_left_out.begin() + 16, some_left_out.begin() + 25);  // of the first lap
+  const auto joints = joints_of(passed(some_left_out), passed(ring), 5);
+  EXPECT_GE(joints.size(), 20U);
+  for (const Joint& joint : joints) EXPECT_LE(joint.b - joint.a, 9U);
 }
 
 TEST(Joints, AreNotWhereAPathHasAGap) {
