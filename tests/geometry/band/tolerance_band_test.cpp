@@ -233,6 +233,47 @@ TEST(NewCrossing, ACircleMayEndWhereItBegan) {
   EXPECT_TRUE(crossings_of(old, circle, 0.01).empty());
 }
 
+// Long paths are cut into chords part by part.
+TEST(NewCrossing, IsFoundWhereverALongPathMeetsItself) {
+  constexpr std::size_t kOut = 1700;
+  std::vector<Point2> old;  // there and back, 0.015 mm beside
+  for (std::size_t i = 0; i <= kOut; ++i) old.emplace_back(0.1 * static_cast<double>(i), 0);
+  for (std::size_t i = 0; i <= kOut; ++i) {
+    old.emplace_back(0.1 * static_cast<double>(kOut - i), 0.015);
+  }
+  std::vector<Point2> apart = old;
+  for (Point2& each : apart) each.y() += 0.004;
+  EXPECT_TRUE(crossings_of(path_at(old, 1), path_at(apart, 1), 0.01).empty());
+  for (const std::size_t at : {std::size_t{5}, std::size_t{1023}, std::size_t{1024}, kOut - 3}) {
+    std::vector<Point2> over = old;
+    over[at].y() = 0.009;
+    over[2 * kOut + 1 - at].y() = 0.006;
+    const auto found = crossings_of(path_at(old, 1), path_at(over, 1), 0.01);
+    ASSERT_EQ(found.size(), 2U) << at;
+    EXPECT_EQ(found[0].first_piece, at - 1);
+    EXPECT_EQ(found[1].first_piece, at);
+    EXPECT_EQ(found[0].second_piece, 2 * kOut + 1 - at);
+  }
+}
+
+// The line over a gap between two pieces counts, too.
+TEST(NewCrossing, MayBeInAGap) {
+  for (const std::size_t first : {std::size_t{4}, std::size_t{1024}}) {
+    std::vector<Point2> points;
+    for (std::size_t i = 0; i <= 1100; ++i) points.emplace_back(0.1 * static_cast<double>(i), 0);
+    points.emplace_back(110, 5);
+    const double across = 0.1 * static_cast<double>(first) + 0.55;
+    points.emplace_back(across, 5);
+    const Path old = path_at(points, 0);
+    points.emplace_back(across, -5);
+    Path gap = path_at(points, 0);
+    EXPECT_EQ(crossings_of(old, gap, 0.01).size(), 1U);
+    const auto from = gap.begin() + static_cast<std::ptrdiff_t>(first);
+    gap.erase(from, from + 10);
+    EXPECT_EQ(crossings_of(old, gap, 0.01).size(), 1U) << first;
+  }
+}
+
 TEST(NewCrossing, PathsInSpaceAreNotLookedAt) {
   const std::vector<Point2> old = lollipop(0.015);
   const std::vector<Point2> over = crossing_lollipop();
