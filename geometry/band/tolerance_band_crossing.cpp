@@ -67,9 +67,18 @@ void each_flat_edge(const ChordPolyline& chords, int axis, const Take& take) {
   }
 }
 
+// mm, of the chords of a path: as many as a path may have take them all together.
+double chord_error_of(const PathSource& path, double tolerance) {
+  double wanted = 0;
+  for (std::size_t i = 0; i < path.size; ++i) {
+    wanted += chords_wanted(path.piece(i), kChordPart * tolerance);
+  }
+  return affordable_error(wanted, kChordPart * tolerance);
+}
+
 // Calls `use` with some of its chords after the other, whose pieces are numbered from `first` on.
 template <typename Use>
-void each_part_in_chords(const PathSource& path, double tolerance, const Use& use) {
+void each_part_in_chords(const PathSource& path, double max_error, const Use& use) {
   constexpr std::size_t kAtOnce = 1024;
   std::vector<PathPiece> pieces;
   for (std::size_t first = 0; first < path.size; first += kAtOnce) {
@@ -81,13 +90,13 @@ void each_part_in_chords(const PathSource& path, double tolerance, const Use& us
       const Point3 joint = end_point(pieces.front());
       pieces.front() = Line{joint, joint};
     }
-    use(cut_into_chords(pieces, kChordPart * tolerance), from);
+    use(cut_into_chords(pieces, max_error), from);
   }
 }
 
-Layers layers_of(const PathSource& path, int axis, double tolerance) {
+Layers layers_of(const PathSource& path, int axis, double max_error) {
   Layers layers;
-  each_part_in_chords(path, tolerance, [&](const ChordPolyline& chords, std::size_t first) {
+  each_part_in_chords(path, max_error, [&](const ChordPolyline& chords, std::size_t first) {
     each_flat_edge(chords, axis, [&](PartEdge edge) {
       edge.label += static_cast<std::uint32_t>(first);
       layers[edge.height].add(edge);
@@ -225,9 +234,9 @@ PartCrossing crossing_of(const Layer& old, const EdgeOwner& first, const EdgeOwn
 }
 
 // The axis across which most of the chords lie; Z before Y before X.
-int main_axis(const PathSource& path, double tolerance) {
+int main_axis(const PathSource& path, double max_error) {
   std::array<std::size_t, 3> flat{};
-  each_part_in_chords(path, tolerance, [&](const ChordPolyline& chords, std::size_t) {
+  each_part_in_chords(path, max_error, [&](const ChordPolyline& chords, std::size_t) {
     for (std::size_t axis = 0; axis < flat.size(); ++axis) {
       for (std::size_t i = 0; i < chords.edge_count(); ++i) {
         if (is_flat(chords, i, static_cast<int>(axis))) ++flat[axis];
@@ -245,14 +254,15 @@ int main_axis(const PathSource& path, double tolerance) {
 
 std::vector<NewCrossing> new_crossings(const PathSource& before, const PathSource& after,
                                        double tolerance) {
-  const int axis = main_axis(after, tolerance);
+  const double max_error = chord_error_of(after, tolerance);
+  const int axis = main_axis(after, max_error);
   // Of the old path only where the new one meets itself, which is seldom.
   std::optional<Layers> then;
   std::map<std::pair<std::size_t, std::size_t>, NewCrossing> all;  // by pieces
-  for (const auto& [height, layer] : layers_of(after, axis, tolerance)) {
+  for (const auto& [height, layer] : layers_of(after, axis, max_error)) {
     std::vector<Meeting> met = meetings_of(layer.edges);
     if (met.empty()) continue;
-    if (!then) then = layers_of(before, axis, tolerance);
+    if (!then) then = layers_of(before, axis, chord_error_of(before, tolerance));
     const auto old = then->find(height);
     if (old == then->end()) continue;
     for (const Meeting& meeting : new_ones(std::move(met), old->second.edges, tolerance)) {

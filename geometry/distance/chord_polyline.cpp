@@ -35,15 +35,21 @@ double chords_for(double bend, double max_error) {
 
 }  // namespace
 
-ChordPolyline cut_into_chords(std::span<const PathPiece> path, double max_error) {
-  double wanted = 0;
-  for (const PathPiece& piece : path) {
-    if (std::holds_alternative<Line>(piece)) continue;
-    wanted += chords_for(second_derivative_bound(piece), max_error);
-  }
+double chords_wanted(const PathPiece& piece, double max_error) {
+  if (std::holds_alternative<Line>(piece)) return 0;
+  return chords_for(second_derivative_bound(piece), max_error);
+}
+
+double affordable_error(double wanted, double max_error) {
   // Halving the number of chords makes their error four times as large.
   const double coarser = std::max(1.0, wanted / kMostChords);
-  max_error = max_error * coarser * coarser;
+  return max_error * coarser * coarser;
+}
+
+ChordPolyline cut_into_chords(std::span<const PathPiece> path, double max_error) {
+  double wanted = 0;
+  for (const PathPiece& piece : path) wanted += chords_wanted(piece, max_error);
+  max_error = affordable_error(wanted, max_error);
 
   ChordPolyline result;
   const std::size_t most = path.size() + static_cast<std::size_t>(std::min(wanted, kMostChords));

@@ -27,6 +27,12 @@ struct ChordPolyline {
 // length when the path has none. Requires: `path` is not empty.
 [[nodiscard]] ChordPolyline cut_into_chords(std::span<const PathPiece> path, double max_error);
 
+// For who cuts a path part by part: the chords that a piece is cut into within an error, 0 for a
+// line; and the error, `max_error` or more, within which a path that would take `wanted` chords
+// takes no more than it may have.
+[[nodiscard]] double chords_wanted(const PathPiece& piece, double max_error);
+[[nodiscard]] double affordable_error(double wanted, double max_error);
+
 // The greatest of |x|, |y|, |z| (mm): what the rounding of differences is relative to.
 [[nodiscard]] double greatest_coordinate(const ChordPolyline& polyline);
 

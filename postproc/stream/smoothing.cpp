@@ -327,9 +327,8 @@ class Smoothing {
     }
     PartSums sums = sums_;
     sums += made.sums;
-    const bool may_mend = source_.text().size() >= limits_.bytes_for_mending;
     const bool grows = made.outcome == WindowOutcome::kDone && made.sums.grow();
-    if (may_mend && grows && is_worse_in_windows(sums)) {
+    if (limits_.mend_windows && grows && is_worse_in_windows(sums)) {
       made = smooth(
           window, [this](const TextBefore&) { return known_; }, sums_);
     }

@@ -27,15 +27,16 @@ struct StreamLimits {
   // some 30 MB, however long it is; as one window it takes 1 KB and more for each block.
   std::size_t bytes_for_windows = std::size_t{1} << 18;
   WindowLimits windows = {};
-  // From this size on a window with which those so far are larger or farther off for too little is
-  // made again; a smaller program is smoothed as a whole then, which keeps less of it back.
-  std::size_t bytes_for_mending = std::size_t{1} << 18;
+  // A window with which the text so far is larger or farther off for too little is made again.
+  // False: the program is smoothed as a whole then, which keeps less of it back.
+  bool mend_windows = true;
 };
 
 // The result without its text, which went to the sink: the same bytes, report and diagnostics
-// whether the program is one window or many, but for which forms are made of runs that are alike
-// (postproc/smooth/like_runs.h): that is found for each window. It is one where it is short, for a lathe, with words
-// of a profile, or where prescan finds no cut.
+// whether the program is one window or many, but for two things that a window does not know: what
+// runs that are alike show in others (postproc/smooth/like_runs.h), and what later ones save
+// (StreamLimits::mend_windows). It is one window where it is short, for a lathe, with words of a
+// profile, or where prescan finds no cut.
 //
 // Everything is done anew, and the sink is told to restart, where the new paths of two parts of a
 // long run cross, with the sections about the crossing copied; and where a window cannot be proved

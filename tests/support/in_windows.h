@@ -33,8 +33,7 @@ struct InWindows {
 };
 
 inline InWindows in_windows(const std::string& text, const SmoothOptions& options,
-                            const WindowLimits& limits,
-                            std::size_t bytes_for_mending = StreamLimits{}.bytes_for_mending) {
+                            const WindowLimits& limits, bool mend_windows = false) {
   InWindows done;
   const ProgramSink sink = {[&](std::string_view part) {
                               done.text += part;
@@ -48,7 +47,7 @@ inline InWindows in_windows(const std::string& text, const SmoothOptions& option
                               return true;
                             }};
   const gcode::SourceText source("part.nc", text);
-  done.result = smooth_program(source, options, sink, {}, {0, limits, bytes_for_mending});
+  done.result = smooth_program(source, options, sink, {}, {0, limits, mend_windows});
   return done;
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "geometry/distance/chord_polyline.h"
@@ -355,6 +356,30 @@ TEST(ComparePaths, LeavesLessWhereWhatIsRunIsBesideThePath) {
             0.4);
   EXPECT_THROW((void)compare_paths(old_path, new_path, 0.4, std::vector<double>{0.1}),
                std::invalid_argument);
+}
+
+// However many chords bends would take, a path that is cut part by part has no more of them than
+// one that is cut at once, and as fine ones.
+TEST(ChordPolyline, OfAPathInPartsHasNoMoreChordsThanAtOnce) {
+  constexpr double kError = 1e-9;
+  Path path;
+  for (int i = 0; i < 60; ++i) {
+    const double x = 200.0 * i;
+    path.push_back(Arc{{x, 0, 0}, {x + 200, 0, 0}, {x + 100, 0, 0}, {0, 0, 1}, kPi});
+    path.push_back(Line{{x + 200, 0, 0}, {x + 200, 0, 0}});
+  }
+  const ChordPolyline whole = cut_into_chords(path, kError);
+  double wanted = 0;
+  for (const PathPiece& piece : path) wanted += chords_wanted(piece, kError);
+  ASSERT_GT(wanted, 2.0 * (1 << 20));
+  std::size_t in_parts = 0;
+  for (const PathPiece& piece : path) {
+    if (std::holds_alternative<Line>(piece)) continue;
+    in_parts += cut_into_chords({&piece, 1}, affordable_error(wanted, kError)).edge_count();
+  }
+  EXPECT_EQ(in_parts, whole.edge_count());
+  EXPECT_LE(in_parts, (std::size_t{1} << 20) + path.size());
+  EXPECT_EQ(affordable_error(100, kError), kError);
 }
 
 }  // namespace

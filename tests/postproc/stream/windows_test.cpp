@@ -111,11 +111,11 @@ TEST(Windows, AreNotLargerTogetherForTooLittle) {
   EXPECT_GT(alone.result.blocks_out, alone.result.blocks_in + 20);
   for (const auto& [text, restarts] :
        {std::pair{kHead + slow + wave + end, 0U}, std::pair{kHead + wave + slow + end, 1U}}) {
-    const InWindows windows = in_windows(text, options, WindowLimits{.least_blocks = 1}, 0);
+    const InWindows windows = in_windows(text, options, WindowLimits{.least_blocks = 1}, true);
     EXPECT_EQ(windows.restarts, restarts);
     EXPECT_EQ(windows.cut(), restarts == 0);
     EXPECT_LE(windows.result.blocks_out, windows.result.blocks_in + 1);
-    EXPECT_EQ(in_windows(text, options, 1).restarts, 1U) << "of a short program";
+    EXPECT_EQ(in_windows(text, options, 1).restarts, 1U) << "not mended";
   }
 }
 
