@@ -93,6 +93,12 @@ Path beziers_of(const BsplineCurve& curve) {
   return {pieces.begin(), pieces.end()};
 }
 
+double length_of(const BsplineCurve& curve) {
+  double length = 0;
+  for (const CubicBezier& piece : curve.bezier_pieces()) length += length_of(PathPiece(piece));
+  return length;
+}
+
 Path path_through(std::span<const Point3> points) {
   Path path;
   if (points.empty()) return path;

@@ -26,6 +26,9 @@ namespace batten::geometry {
 // The Bezier pieces of a curve of degree 3 or less.
 [[nodiscard]] Path beziers_of(const BsplineCurve& curve);
 
+// mm, along a curve of degree 3 or less.
+[[nodiscard]] double length_of(const BsplineCurve& curve);
+
 // The straight chain through `points`, as pieces. Neighbours that are one place are joined.
 [[nodiscard]] Path path_through(std::span<const Point3> points);
 

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "gcode/state/reason.h"
+#include "geometry/path/joined_curve.h"
 #include "postproc/runs/run_cutting.h"
 #include "postproc/runs/run_path.h"
 #include "postproc/smooth/curve_forms.h"
@@ -97,6 +98,7 @@ class RunSmoother {
         add_candidates_of(*fair, CurveRole::kFirst);
         try_simpler(meant);
         try_rounding();
+        try_inside(*fair, meant);
         if (method == Method::kBest) {
           try_corners();
           try_tube();
@@ -166,12 +168,27 @@ class RunSmoother {
   }
 
   [[nodiscard]] std::optional<RunCurve> curve_by(Method method, const CurveRequest& request) const {
-    if (task_.memo == nullptr) return curve_of(method, run().points, request);
-    const RunMemo::CurveKey key{method,          request.tolerance,         request.side_margin,
-                                request.scatter, request.keep_found_corner, request.accurate,
+    return known_curve(method, CurveRole::kFirst, request,
+                       [&] { return curve_of(method, run().points, request); });
+  }
+
+  // That of the memo, or the one that `make` gives. `role`: of curves that a request alone does not
+  // tell apart.
+  template <typename Make>
+  [[nodiscard]] std::optional<RunCurve> known_curve(Method method, CurveRole role,
+                                                    const CurveRequest& request,
+                                                    const Make& make) const {
+    if (task_.memo == nullptr) return make();
+    const RunMemo::CurveKey key{method,
+                                role,
+                                request.tolerance,
+                                request.side_margin,
+                                request.scatter,
+                                request.keep_found_corner,
+                                request.accurate,
                                 request.near};
     return task_.memo->curves.get(key, [&](std::size_t number) {
-      auto curve = curve_of(method, run().points, request);
+      auto curve = make();
       if (curve) curve->number = number;
       return curve;
     });
@@ -235,6 +252,20 @@ class RunSmoother {
     const double left = shares_.smoothing + shares_.form - along.path.deviation;
     add_vertices({task_, times_, bounds_, *meant_, shape_, budget_},
                  {along, bends, shares_.form, left, CurveRole::kVertices}, result_);
+  }
+
+  // Where the path that was meant is slower by its length alone, since chords cut its bends short:
+  // one as long as the chords, a little inside of it.
+  void try_inside(const RunCurve& meant, const CurveRequest& request) {
+    if (options().side != geometry::Side::kBoth || !run().bends.empty()) return;
+    const Selection so_far = choose(result_, options(), Among::kFormsAlone);
+    if (!so_far.order.empty() || so_far.reason != gcode::reason::kSlower) return;
+    if (is_out_of_budget() || is_left_out(CurveRole::kInside)) return;
+    const double longer = geometry::length_of(meant.path.curve) / result_.facts.length - 1;
+    if (longer <= kCost.longer) return;
+    const auto inside = known_curve(Method::kFair, CurveRole::kInside, request,
+                                    [&] { return inside_curve(meant, run().points, request); });
+    if (inside) add_candidates_of(*inside, CurveRole::kInside);
   }
 
   // Where few blocks are wanted: a curve that leaves the vertices by some of the tolerance takes

@@ -15,6 +15,7 @@
 #include "geometry/fitting/corners/ozcan_corner.h"
 #include "geometry/fitting/corners/time_optimal_corner.h"
 #include "geometry/fitting/fair/fair_measure.h"
+#include "geometry/fitting/fair/inner_path.h"
 #include "geometry/path/curve_pieces.h"
 #include "geometry/path/joined_curve.h"
 #include "postproc/machine/planner/feed_plan.h"
@@ -218,11 +219,24 @@ std::optional<RunCurve> curve_of(Method method, std::span<const Point3> run,
   return RunCurve{method, *std::move(found)};
 }
 
+std::optional<RunCurve> inside_curve(const RunCurve& meant, std::span<const Point3> run,
+                                     CurveRequest request) {
+  const double whole = request.tolerance;
+  // A third of the height of chords, which are no higher than the tolerance beside such a curve.
+  const std::vector<Point3> moved = geometry::drawn_inwards(run, meant.path, whole / 3);
+  double most = 0;
+  for (std::size_t i = 0; i < run.size(); ++i) most = std::max(most, (moved[i] - run[i]).norm());
+  request.tolerance -= most;
+  auto path = fair_curve(moved, request);
+  if (!path) return std::nullopt;
+  path->edge_deviations.clear();
+  path->deviation =
+      geometry::greatest_deviation(path->curve, {run, path->vertex_parameters}, whole);
+  return RunCurve{Method::kFair, *std::move(path)};
+}
+
 double straight_time(const BsplineCurve& curve, const CurveRequest& request) {
-  double length = 0;
-  for (const geometry::PathPiece& piece : geometry::beziers_of(curve)) {
-    length += geometry::length_of(piece);
-  }
+  const double length = geometry::length_of(curve);
   const geometry::Path line = {geometry::Line{Point3::Zero(), Point3(length, 0, 0)}};
   return plan_feed(line, plan_limits(request)).time;
 }

@@ -32,6 +32,12 @@ struct RunCurve {
 [[nodiscard]] std::optional<RunCurve> curve_of(Method method, std::span<const geometry::Point3> run,
                                                const CurveRequest& request);
 
+// The fair curve as long as the run's chords, a little inside the bends of `meant` (the fair curve
+// of the run): what takes no more time than the chords. Nothing where there is no room for it.
+[[nodiscard]] std::optional<RunCurve> inside_curve(const RunCurve& meant,
+                                                   std::span<const geometry::Point3> run,
+                                                   CurveRequest request);
+
 // s: from rest to rest along a straight line as long as the curve. No curve of that length takes
 // less on a machine with the feed, acceleration and jerk of the request.
 [[nodiscard]] double straight_time(const geometry::BsplineCurve& curve,

@@ -107,7 +107,7 @@ struct RunMemo {
   };
 
   // What differs between the requests of one run.
-  using CurveKey = std::tuple<Method, double, double, double, double, bool, bool>;
+  using CurveKey = std::tuple<Method, CurveRole, double, double, double, double, bool, bool>;
   Made<CurveKey, std::optional<RunCurve>> curves;
   // Of which curve, in which form, along what, and how.
   using PlanKey = std::tuple<std::size_t, Form, Along, PlanOptions>;

@@ -18,7 +18,15 @@ namespace batten::postproc {
 
 // What a curve of a run is tried for; kFirst: it is the path that was meant, or of the method that
 // is asked for by name.
-enum class CurveRole : std::uint8_t { kFirst, kSimpler, kRounding, kCorners, kTube, kVertices };
+enum class CurveRole : std::uint8_t {
+  kFirst,
+  kInside,
+  kSimpler,
+  kRounding,
+  kCorners,
+  kTube,
+  kVertices
+};
 
 // A form as it is offered for a run: of which curve, and which of those of one kind.
 struct FormKey {

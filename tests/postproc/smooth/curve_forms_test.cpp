@@ -32,6 +32,33 @@ TEST(CurveForms, AreChordsInClearlyFewerBlocks) {
   }
 }
 
+// A spiral of a half to one millimetre in chords that each turn by 0.2 rad: what follows its bends
+// is longer than they are by two thousandths, and so is its time. A little inside it is not.
+TEST(CurveForms, AreInsideBendsThatChordsCutShort) {
+  std::string spiral = "G21 G90 G17 G64\nG0 X0.5 Y0\nF400\n";
+  for (int i = 1; i < 60; ++i) {
+    const double radius = 0.5 + 0.01 * i;
+    spiral +=
+        fmt::format("G1 X{:.3f} Y{:.3f}\n", radius * std::cos(0.2 * i), radius * std::sin(0.2 * i));
+  }
+  const SmoothOptions options = options_for("linuxcnc");
+  const SmoothedRun run = OneRun(spiral).smooth(options);
+  const Selection chosen = choose(run, options);
+  ASSERT_FALSE(chosen.order.empty()) << chosen.reason;
+  const Candidate& best = run.candidates[chosen.order.front()];
+  EXPECT_EQ(best.key.role, CurveRole::kInside);
+  const Figures& before = run.facts.scale.original;
+  EXPECT_LE(best.figures.blocks, kCost.clearly_smaller * before.blocks);
+  EXPECT_LE(best.figures.distance, before.distance);
+  int along_the_bends = 0;
+  for (const Candidate& c : run.candidates) {
+    if (c.key.role != CurveRole::kFirst || c.has_run_in_place) continue;
+    ++along_the_bends;
+    EXPECT_EQ(objection_to(c.figures, run.facts.scale, options.prefer), Objection::kSlower);
+  }
+  EXPECT_GT(along_the_bends, 0);
+}
+
 // Lines in their room are the same however high they may be, and what two deviations allow may
 // have one and the same text.
 TEST(CurveForms, AreMadeOnce) {
