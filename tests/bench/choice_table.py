@@ -53,7 +53,7 @@ def read_options():
     parser.add_argument("--half", choices=["first", "second"])
     parser.add_argument("--only", default="")
     parser.add_argument("--option", action="append", default=[], metavar="WORD")
-    parser.add_argument("--runs", action="store_true", help="a line for each reason of each program")
+    parser.add_argument("--runs", action="store_true", help="of each program, too, why its blocks of fine chords are not clearly better")
     return parser.parse_args()
 
 
@@ -171,6 +171,7 @@ def main():
                 for i, each in enumerate((before, after)):
                     squares[prefer][i] += each["distance"] ** 2 * length
                 squares[prefer][2] += length
+                not_better = collections.Counter()
                 for run in report["runs"]:
                     if not is_fine(run):
                         continue
@@ -178,9 +179,13 @@ def main():
                     rewritten = run["status"] == "rewritten"
                     against = what_is_worse(run, near, period) if rewritten else ["kept, " + run["reason"]]
                     if against:
-                        kept[prefer][" and ".join(against)] += run["blocks_in"]
+                        not_better[" and ".join(against)] += run["blocks_in"]
                     else:
                         shares[prefer, "better"] += run["blocks_in"]
+                kept[prefer] += not_better
+                if options.runs:
+                    for reason, count in not_better.most_common():
+                        print(f"{'':44} {'':8} {prefer:8} {count:7} blocks of fine chords: {reason}")
         for prefer in PREFERENCES:
             print(f"{'all':44} {target:8} {prefer:8}",
                   *(percent(sums[prefer, key][1], sums[prefer, key][0]) for key in ["time", "blocks", "bytes"]),
