@@ -322,8 +322,8 @@ MESSAGE = re.compile(r"\(\s*(MSG|DEBUG|PRINT|LOG|LOGOPEN|LOGAPPEND|LOGCLOSE|PROB
 SCRIPT = re.compile(r"\(\s*PY\s*,|;\s*PY\s*,", re.I)
 NEIGHBOURS = re.compile(r"\b(RND|RNDM|CHF|CHR)\b|,\s*[RCA]", re.I)
 JUMPS = re.compile(r"\b(GOTO[FBC]?|WHILE|REPEATB?|ENDLOOP|UNTIL)\b|\bM99\s*P|\bM9[78]|G65|G66", re.I)
-OWN_COMMENT = re.compile(r"\s*(?:\d+\s+)?(?:\(Batten: smoothed within [\d.]+ (?:mm|in)\)|"
-                         r";\s*Batten: smoothed within [\d.]+ (?:mm|in))\s*", re.I)
+OWN_COMMENT = re.compile(r"\s*(?:\(Batten: smoothed within [\d.]+ (?:mm|in)\)|"
+                         r";\s*Batten: smoothed within [\d.]+ (?:mm|in))\s*$", re.I)
 ASSIGNMENT = re.compile(r"(?:N\d+)?#(?:\d{1,3}|<[A-Z_]+>)=[-+*/.\d#\[\]]+")  # of a parameter that is no offset
 SETTING = re.compile(r"(?:N\d+)?#([1-9]|[12]\d|30|<[A-Z][A-Z0-9_]*>)=([-+]?(?:\d+\.?\d*|\.\d+))", re.I)
 FLOW = re.compile(r"^\s*(N\d+\s*)?O[<\d]", re.I)  # subprograms, conditions, loops
@@ -907,9 +907,11 @@ class Checker:
         moves, comments = [], []
         for n in range(begin, begin + count):
             text = lines[n]
-            if is_new and OWN_COMMENT.fullmatch(text):
-                self.own_comments += 1
-                continue
+            if is_new:
+                text, found = OWN_COMMENT.subn("", text)
+                self.own_comments += found
+                if found and (not text.strip() or text.strip().isdigit()):  # a line of its own
+                    continue
             if is_new and text.strip() and text.strip() in self.added:
                 self.added_lines += 1
                 continue

@@ -81,14 +81,14 @@ bool wins_beside_size(const RunState& work) {
   return is_clearly_better(figures, scale);
 }
 
-// Whether all that is won is less size than the comment takes, by the measure of the cost: the
-// ratios of blocks and of bytes, by halves.
+// Whether all that is won is less size than the comment takes behind a block, by the measure of the
+// cost: the ratios of blocks and of bytes, by halves.
 bool is_eaten_by_comment(const std::vector<RunState>& works, const PartSums& sums,
                          const SmoothOptions& options) {
   const std::string comment = provenance_comment(*options.target, options.tolerance_mm);
   if (comment.empty() || std::ranges::any_of(works, wins_beside_size)) return false;
   const auto bytes = static_cast<double>(comment.size() + 1);
-  return (sums.change.blocks + 1) / sums.before.blocks +
+  return sums.change.blocks / sums.before.blocks +
              (sums.change.bytes + bytes) / sums.before.bytes >
          0;
 }

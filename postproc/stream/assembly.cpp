@@ -31,8 +31,13 @@ bool ends_program(const gcode::Program& program, const gcode::Block& block) {
 class Assembler {
  public:
   Assembler(const gcode::Program& program, std::span<const Section> sections,
-            std::span<const RunState> works, const Additions& additions)
-      : program_(program), sections_(sections), works_(works), additions_(additions) {}
+            std::span<const RunState> works, const Additions& additions,
+            const gcode::Control& target)
+      : program_(program),
+        sections_(sections),
+        works_(works),
+        additions_(additions),
+        target_(target) {}
 
   AssembledText run() {
     if (program_.blocks.empty()) return {};
@@ -70,14 +75,29 @@ class Assembler {
         header_at_ >= begin && header_at_ < program_.blocks[section.last_block].end;
     if (starts_program) add_lines(additions_.words.header, line_end_);
     std::string text = chosen->text.text;
-    if (!std::exchange(commented_, true) && !additions_.comment.empty()) {
+    if (!std::exchange(commented_, true) && !additions_.comment.empty() &&
+        !(chosen->form != Form::kCurves && is_added_behind_words(text))) {
       add_comment(work->context.numbers.first, text);
     }
     if (!std::exchange(in_runs_, true)) add_lines(additions_.words.before_run, line_end_);
     text_ += text;
   }
 
-  // Where blocks have numbers it takes the first one, and those of `text` follow it.
+  // Whether there is room for the comment in the first line, which has none yet.
+  [[nodiscard]] bool is_added_behind_words(std::string& text) const {
+    const std::size_t end = text.find(line_end_);
+    if (end == 0 || end == std::string::npos) return false;
+    std::string line = text.substr(0, end);
+    if (line.find_first_of("(;") != std::string::npos) return false;
+    if (target_.blanks) line += ' ';
+    line += additions_.comment;
+    if (line_length(target_, line) > target_.max_line_length) return false;
+    text.replace(0, end, line);
+    return true;
+  }
+
+  // On a line of its own. Where blocks have numbers it takes the first one, and those of `text`
+  // follow it.
   void add_comment(const std::optional<std::uint32_t>& number, std::string& text) {
     std::string comment = additions_.comment + std::string(line_end_);
     if (number) {
@@ -150,6 +170,7 @@ class Assembler {
   std::span<const Section> sections_;
   std::span<const RunState> works_;
   const Additions& additions_;
+  const gcode::Control& target_;
   std::string text_;
   std::vector<std::size_t> begins_;
   std::string_view line_end_ = "\n";  // of the last rewritten run
@@ -162,8 +183,9 @@ class Assembler {
 }  // namespace
 
 AssembledText assemble(const gcode::Program& program, std::span<const Section> sections,
-                       std::span<const RunState> works, const Additions& additions) {
-  return Assembler(program, sections, works, additions).run();
+                       std::span<const RunState> works, const Additions& additions,
+                       const gcode::Control& target) {
+  return Assembler(program, sections, works, additions, target).run();
 }
 
 namespace {

@@ -17,7 +17,7 @@
 namespace batten::postproc {
 
 struct Additions {
-  std::string comment;  // that the program was smoothed, before the first rewritten run; or empty
+  std::string comment;  // that the program was smoothed; or empty
   ProfileWords words;   // with the tolerance filled in
 };
 
@@ -29,11 +29,14 @@ struct AssembledText {
 // The bytes of the program's blocks where nothing is rewritten; additions then are left out too.
 // `works` in the order of their sections. Added lines end as the lines around them do.
 //
-// The header goes before the first block that says anything but a program mark, the footer before
-// the last M2, M30 or M99 outside runs, before the closing % where there is none, or at the end.
+// The comment goes behind the words of the first rewritten block, where that is no curve and has
+// room for it on the target; else before it, on a line of its own. The header goes before the first
+// block that says anything but a program mark, the footer before the last M2, M30 or M99 outside
+// runs, before the closing % where there is none, or at the end.
 [[nodiscard]] AssembledText assemble(const gcode::Program& program,
                                      std::span<const Section> sections,
-                                     std::span<const RunState> works, const Additions& additions);
+                                     std::span<const RunState> works, const Additions& additions,
+                                     const gcode::Control& target);
 
 // Lines from 1, both outside: those between hold the rewritten runs.
 struct LineBracket {

@@ -7,7 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "postproc/smooth/forms/provenance.h"
 #include "postproc/smooth/part_runs.h"
 #include "postproc/smooth/selection/cost.h"
 #include "postproc/stream/pipeline.h"
@@ -55,9 +54,6 @@ class ToleranceSurvey {
         add_to(row.before, figures[i].first);
         add_to(row.after, figures[i].second);
       }
-      // The comment that the program was smoothed.
-      const bool commented = !provenance_comment(*row.options.target, 1).empty();
-      if (row.after.rewritten && commented) row.after.blocks += 1;
       const double elsewhere = read.program_before.seconds - row.before.time_s;
       for (ExploredFigures* figures : {&row.before, &row.after}) {
         figures->blocks += static_cast<double>(read.blocks_in);

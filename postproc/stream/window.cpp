@@ -257,7 +257,8 @@ class Prover {
 
   ProvedText verified_text() {
     ProvedText round;
-    AssembledText assembled = assemble(part_.program, runs_.sections, runs_.works, additions_);
+    AssembledText assembled =
+        assemble(part_.program, runs_.sections, runs_.works, additions_, *options_.target);
     round.text = std::move(assembled.text);
     AddedLines added = take_added_lines(part_.program, round.text, additions_.words);
     const gcode::SourceText written(part_.program.source.name(), std::move(added.text));

@@ -128,10 +128,12 @@ TEST(AProfile, ChangesWhatIsWritten) {
   const SmoothResult result = smoothed_for(mine, text);
   ASSERT_EQ(rewritten_runs(result), 1U);
   EXPECT_TRUE(result.proved);
-  const auto lines = new_lines(text, result);
-  EXPECT_EQ(lines.front(), "; Batten: smoothed within 0.02 mm");
+  auto lines = new_lines(text, result);
+  const std::string comment = "; Batten: smoothed within 0.02 mm";
+  ASSERT_TRUE(lines.front().ends_with(comment)) << lines.front();
+  lines.front().resize(lines.front().size() - comment.size());
   std::size_t arcs = 0;
-  for (std::size_t i = 1; i < lines.size(); ++i) {
+  for (std::size_t i = 0; i < lines.size(); ++i) {
     EXPECT_EQ(lines[i].find(' '), std::string::npos) << lines[i];
     EXPECT_EQ(lines[i].find_first_of("IJK"), std::string::npos) << lines[i];
     arcs += lines[i].find('R') != std::string::npos ? 1 : 0;

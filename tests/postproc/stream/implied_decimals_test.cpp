@@ -132,8 +132,9 @@ TEST(ImpliedDecimals, EveryWrittenLengthHasAPoint) {
     const SmoothResult result = smoothed(before, with_decimals("fanuc", kIncrements));
     ASSERT_EQ(rewritten_runs(result), 1U);
     const std::vector<std::string> old_lines = lines_of(before);
-    for (const std::string& line : lines_of(result.text)) {
-      if (std::ranges::find(old_lines, line) != old_lines.end() || line[0] == '(') continue;
+    for (const std::string& whole : lines_of(result.text)) {
+      if (std::ranges::find(old_lines, whole) != old_lines.end()) continue;
+      const std::string line = whole.substr(0, whole.find('('));
       for (std::size_t i = 0; i < line.size(); ++i) {
         if (std::string("XYZIJK").find(line[i]) == std::string::npos) continue;
         const std::size_t end = std::min(line.find_first_of(" XYZIJKRF", i + 1), line.size());

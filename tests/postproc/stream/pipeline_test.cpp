@@ -180,7 +180,7 @@ TEST(Pipeline, KeepsFeedsInTheirOrderAndAtTheirPlaces) {
   std::vector<std::string> feeds;
   for (const std::string& line : lines_of(result.text)) {
     const std::size_t at = line.find('F');
-    if (at != std::string::npos) feeds.push_back(line.substr(at, line.find('\n') - at));
+    if (at != std::string::npos) feeds.push_back(line.substr(at, line.find_first_of(" \n", at) - at));
   }
   EXPECT_EQ(feeds, (std::vector<std::string>{"F300", "F2000", "F1000", "F1500"}));
 }
@@ -293,6 +293,26 @@ TEST(Pipeline, SaysOnceThatAProgramWasSmoothed) {
   const std::size_t at = result.text.find("Batten: smoothed within 0.01 mm");
   ASSERT_NE(at, std::string::npos);
   EXPECT_EQ(result.text.find("Batten", at + 1), std::string::npos);
+}
+
+// Behind the words of the first new block, so that the program has no block more for it; on a line of
+// its own where there is no room for that.
+TEST(Pipeline, SaysBehindABlockThatAProgramWasSmoothed) {
+  const std::string said = "(Batten: smoothed within 0.01 mm)";
+  const std::string text = wave_program();
+  const SmoothResult result = smoothed(text, options_for("linuxcnc"));
+  const std::size_t at = result.text.find(said);
+  ASSERT_NE(at, std::string::npos);
+  const std::size_t line = result.text.rfind('\n', at) + 1;
+  EXPECT_NE(result.text[line], '(');
+  EXPECT_EQ(result.text[at + said.size()], '\n');
+  gcode::Control narrow = *gcode::find_control("linuxcnc");
+  narrow.max_line_length = 60;
+  SmoothOptions options = options_for("linuxcnc");
+  options.target = &narrow;
+  const SmoothResult apart = smoothed(text, options);
+  EXPECT_NE(apart.text.find("\n" + said + "\n"), std::string::npos);
+  EXPECT_EQ(apart.blocks_out, result.blocks_out + 1);
 }
 
 // LinuxCNC forgets the feed there, and stops at a curve without one.
