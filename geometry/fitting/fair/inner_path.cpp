@@ -1,6 +1,5 @@
 #include "geometry/fitting/fair/inner_path.h"
 
-#include <algorithm>
 #include <cstddef>
 
 namespace batten::geometry {
