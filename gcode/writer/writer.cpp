@@ -175,12 +175,10 @@ bool Writer::add_comment(std::string_view text) {
   if (move_end_ != text_.size() || text_.empty()) return false;
   const std::string_view written(text_.data(), text_.size() - line_end_.size());
   const std::size_t begin = written.find_last_of("\r\n") + 1;  // of npos: 0
-  std::string line(written.substr(begin));
-  if (control_.blanks) line += ' ';
-  line += text;
-  if (line_length(control_, line) > control_.max_line_length) return false;
+  const auto line = with_comment(control_, written.substr(begin), text);
+  if (!line) return false;
   text_.resize(begin);
-  text_ += line;
+  text_ += *line;
   text_ += line_end_;
   return true;
 }
@@ -463,6 +461,15 @@ void Writer::end_curve() {
   if (state_.modal.motion != MotionMode::kOther || !motion_stays(control_.language)) return;
   add_motion(MotionMode::kLine);
   end_block();
+}
+
+std::optional<std::string> with_comment(const Control& control, std::string_view line,
+                                        std::string_view comment) {
+  std::string both(line);
+  if (control.blanks) both += ' ';
+  both += comment;
+  if (line_length(control, both) > control.max_line_length) return std::nullopt;
+  return both;
 }
 
 }  // namespace batten::gcode

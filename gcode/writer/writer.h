@@ -121,4 +121,8 @@ class Writer {
   std::size_t move_end_ = 0;  // of text_, where the last block ended
 };
 
+// A line with a comment behind its words; nothing where that would be too long for the control.
+[[nodiscard]] std::optional<std::string> with_comment(const Control& control, std::string_view line,
+                                                      std::string_view comment);
+
 }  // namespace batten::gcode

@@ -11,6 +11,7 @@
 
 #include "gcode/text/characters.h"
 #include "gcode/text/line_cursor.h"
+#include "gcode/writer/writer.h"
 
 namespace batten::postproc {
 namespace {
@@ -76,24 +77,23 @@ class Assembler {
     if (starts_program) add_lines(additions_.words.header, line_end_);
     std::string text = chosen->text.text;
     if (!std::exchange(commented_, true) && !additions_.comment.empty() &&
-        !(chosen->form != Form::kCurves && is_added_behind_words(text))) {
+        !(chosen->form != Form::kCurves && add_comment_behind(text))) {
       add_comment(work->context.numbers.first, text);
     }
     if (!std::exchange(in_runs_, true)) add_lines(additions_.words.before_run, line_end_);
     text_ += text;
   }
 
-  // Whether there is room for the comment in the first line, which has none yet.
-  [[nodiscard]] bool is_added_behind_words(std::string& text) const {
+  // Behind the words of the first line. Returns false and changes nothing where it has a comment
+  // already or no room for one.
+  [[nodiscard]] bool add_comment_behind(std::string& text) const {
     const std::size_t end = text.find(line_end_);
     if (end == 0 || end == std::string::npos) return false;
-    std::string line = text.substr(0, end);
+    const std::string line = text.substr(0, end);
     if (line.find_first_of("(;") != std::string::npos) return false;
-    if (target_.blanks) line += ' ';
-    line += additions_.comment;
-    if (line_length(target_, line) > target_.max_line_length) return false;
-    text.replace(0, end, line);
-    return true;
+    const auto both = with_comment(target_, line, additions_.comment);
+    if (both) text.replace(0, end, *both);
+    return both.has_value();
   }
 
   // On a line of its own. Where blocks have numbers it takes the first one, and those of `text`
