@@ -79,7 +79,7 @@ double chord_error_of(const PathSource& path, double tolerance) {
 // Calls `use` with some of its chords after the other, whose pieces are numbered from `first` on.
 template <typename Use>
 void each_part_in_chords(const PathSource& path, double max_error, const Use& use) {
-  constexpr std::size_t kAtOnce = 1024;
+  constexpr std::size_t kAtOnce = 256;
   std::vector<PathPiece> pieces;
   for (std::size_t first = 0; first < path.size; first += kAtOnce) {
     const std::size_t end = std::min(first + kAtOnce, path.size);

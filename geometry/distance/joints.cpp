@@ -17,10 +17,10 @@ constexpr double kLonger = 0.1;
 // The vertices of a path by their places: open addressing, linear probing.
 class PlaceTable {
  public:
-  explicit PlaceTable(std::span<const PassedPlace> places)
-      : places_(places), slots_(std::bit_ceil(2 * places.size() + 1), kNone) {
+  explicit PlaceTable(const PassedPlaces& places)
+      : places_(places), slots_(std::bit_ceil(places.size() + places.size() / 3 + 1), kNone) {
     for (std::uint32_t i = 0; i < places.size(); ++i) {
-      std::size_t slot = slot_of(places[i].place);
+      std::size_t slot = slot_of(places.place_at(i));
       while (slots_[slot] != kNone) slot = next(slot);
       slots_[slot] = i;
     }
@@ -31,7 +31,7 @@ class PlaceTable {
   [[nodiscard]] std::optional<std::size_t> first_at(const Point3& place, const Takes& takes) const {
     for (std::size_t slot = slot_of(place); slots_[slot] != kNone; slot = next(slot)) {
       const std::uint32_t i = slots_[slot];
-      if (places_[i].place == place && takes(i)) return i;
+      if (takes(i) && places_.place_at(i) == place) return i;
     }
     return std::nullopt;
   }
@@ -53,23 +53,22 @@ class PlaceTable {
     return sum & (slots_.size() - 1);
   }
 
-  std::span<const PassedPlace> places_;
+  const PassedPlaces& places_;
   std::vector<std::uint32_t> slots_;
 };
 
 }  // namespace
 
-std::vector<Joint> joints_of(std::span<const PassedPlace> a, std::span<const PassedPlace> b,
-                             std::size_t apart) {
+std::vector<Joint> joints_of(const PassedPlaces& a, const PassedPlaces& b, std::size_t apart) {
   const PlaceTable places(a);
   std::vector<Joint> joints;
   Joint last;
   double length_a = 0;  // up to the last one
   double length_b = 0;
   for (std::size_t k = 0; k < b.size(); ++k) {
-    const double on_b = b[k].length - length_b;
-    const auto at = places.first_at(b[k].place, [&](std::size_t i) {
-      const double on_a = a[i].length - length_a;
+    const double on_b = b.lengths[k] - length_b;
+    const auto at = places.first_at(b.place_at(k), [&](std::size_t i) {
+      const double on_a = a.lengths[i] - length_a;
       return i >= last.a && std::abs(on_a - on_b) <= kLonger * std::max(on_a, on_b);
     });
     if (!at) continue;
@@ -77,8 +76,8 @@ std::vector<Joint> joints_of(std::span<const PassedPlace> a, std::span<const Pas
     if (joint.a - last.a < apart && joint.b - last.b < apart) continue;
     joints.push_back(joint);
     last = joint;
-    length_a = a[*at].length;
-    length_b = b[k].length;
+    length_a = a.lengths[*at];
+    length_b = b.lengths[k];
   }
   return joints;
 }

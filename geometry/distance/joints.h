@@ -3,17 +3,21 @@
 #pragma once
 
 #include <cstddef>
-#include <span>
+#include <functional>
 #include <vector>
 
 #include "geometry/basic/point.h"
 
 namespace batten::geometry {
 
-// A vertex of a path between two of its pieces.
-struct PassedPlace {
-  Point3 place;       // not a number where the pieces do not meet
-  double length = 0;  // mm, of the path up to there
+// The vertices of a path between its pieces.
+struct PassedPlaces {
+  std::vector<double> lengths;  // mm, of the path up to each
+  // Of each; not a number where the pieces do not meet. They are looked up where they are, for
+  // there are many.
+  std::function<Point3(std::size_t)> place_at;
+
+  [[nodiscard]] std::size_t size() const { return lengths.size(); }
 };
 
 struct Joint {
@@ -25,7 +29,7 @@ struct Joint {
 // the vertices of the paths, of which the i-th is behind i + 1 pieces. Only those are joints up to
 // which both paths are about as long, since a path may pass a place more than once; that two paths
 // follow each other is for a comparison to find out.
-[[nodiscard]] std::vector<Joint> joints_of(std::span<const PassedPlace> a,
-                                           std::span<const PassedPlace> b, std::size_t apart);
+[[nodiscard]] std::vector<Joint> joints_of(const PassedPlaces& a, const PassedPlaces& b,
+                                           std::size_t apart);
 
 }  // namespace batten::geometry

@@ -67,18 +67,18 @@ std::string text_of(const Violation& violation, const VerifyCommand& command) {
 
 std::string second_check_text(const Verification& verification, const VerifyCommand& command) {
   if (!command.twice) return "";
-  const auto flat = std::ranges::count_if(verification.stretches, &Stretch::in_region);
+  const auto flat = std::ranges::count_if(verification.sections, &ComparedSection::in_region);
   return fmt::format(
       "  second check: {} of {} changed sections lie in one plane; each path of them lies in the "
       "region of the tolerance about the other, and passes its holes on the same side\n",
-      flat, verification.stretches.size());
+      flat, verification.sections.size());
 }
 
 // ", 2 of them within 0.002 to 0.005 mm as the old program says"
 std::string closer_sections_text(const Verification& verification, const VerifyCommand& command) {
   std::vector<double> closer;
-  for (const Stretch& stretch : verification.stretches) {
-    if (stretch.tolerance_mm < command.tolerance_mm) closer.push_back(stretch.tolerance_mm);
+  for (const ComparedSection& section : verification.sections) {
+    if (section.tolerance_mm < command.tolerance_mm) closer.push_back(section.tolerance_mm);
   }
   if (closer.empty()) return "";
   const auto [least, greatest] = std::ranges::minmax(closer);
@@ -108,23 +108,23 @@ std::string summary_of(const Verification& verification, const VerifyCommand& co
              verification.deviation_line > 0
                  ? fmt::format(" near line {}", verification.deviation_line)
                  : "",
-             corners, verification.stretches.size(), closer_sections_text(verification, command),
+             corners, verification.sections.size(), closer_sections_text(verification, command),
              verification.events_compared) +
          second_check_text(verification, command);
 }
 
-Json json_of(const Stretch& stretch) {
-  const geometry::PathComparison& comparison = stretch.comparison;
-  return {{"old_first_line", stretch.old_first_line},
-          {"old_last_line", stretch.old_last_line},
-          {"new_first_line", stretch.new_first_line},
-          {"new_last_line", stretch.new_last_line},
-          {"tolerance_mm", stretch.tolerance_mm},
+Json json_of(const ComparedSection& section) {
+  const geometry::PathComparison& comparison = section.comparison;
+  return {{"old_first_line", section.old_first_line},
+          {"old_last_line", section.old_last_line},
+          {"new_first_line", section.new_first_line},
+          {"new_last_line", section.new_last_line},
+          {"tolerance_mm", section.tolerance_mm},
           {"proved", comparison.verdict == geometry::Verdict::kProved},
           {"at_least_mm", comparison.bounds.at_least},
           {"at_most_mm", comparison.bounds.at_most},  // infinite: null
           {"certificate_size", comparison.certificate_size},
-          {"in_region", stretch.in_region}};
+          {"in_region", section.in_region}};
 }
 
 Json json_of(const Violation& violation) {
@@ -153,7 +153,7 @@ Json json_of(const Verification& verification, const VerifyCommand& command,
                                    {"corner_mm", verification.corner_mm},
                                    {"events_compared", verification.events_compared},
                                    {"violations", json_list(verification.violations, item)},
-                                   {"sections", json_list(verification.stretches, item)},
+                                   {"sections", json_list(verification.sections, item)},
                                    {"diagnostics", diagnostics_json(of_new, new_source)}});
   if (!called.empty()) json["called"] = called_json(called);
   return json;
@@ -190,8 +190,8 @@ int write_reports(const VerifyCommand& command, const Verification& verification
   write_report(command.json_file, command.force, [&] { return json_text(json); });
   if (!command.page.is_wanted()) return 0;
   std::vector<PageLines> rows;
-  for (const Stretch& stretch : verification.stretches) {
-    rows.push_back({stretch.old_first_line, stretch.old_last_line});
+  for (const ComparedSection& section : verification.sections) {
+    rows.push_back({section.old_first_line, section.old_last_line});
   }
   gcode::Diagnostics said_before;
   const gcode::ReadPart before = read_whole(texts.before.source, texts.before.reading, said_before);

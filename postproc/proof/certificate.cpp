@@ -65,7 +65,7 @@ class LinedProgram {
   [[nodiscard]] bool cuts_at(std::size_t line) const {
     return first_cut_[line] < first_cut_[line + 1];
   }
-  [[nodiscard]] StretchSide side(std::size_t begin, std::size_t end) const {
+  [[nodiscard]] SectionSide side(std::size_t begin, std::size_t end) const {
     const std::size_t first = first_cut_[begin];
     return {&read_,
             {events_.cuts.data() + first, first_cut_[end] - first},
@@ -209,7 +209,7 @@ class CertificateWriter {
   // -----------------------------------------------------------------------
 
   bool write_run(const Range& of_old, const Range& of_new) {
-    const auto parts = match_stretch(old_.side(of_old.begin, of_old.end),
+    const auto parts = match_section(old_.side(of_old.begin, of_old.end),
                                      new_.side(of_new.begin, of_new.end), tolerance_);
     if (!parts) return false;
     text_ += fmt::format("run {} {} {} {}\n", of_old.begin + 1, of_old.end - of_old.begin,

@@ -314,7 +314,7 @@ ProgramEvent& EventLister::add_event(EventKind kind) {
 
 void EventLister::add_cut(const Motion& motion, bool feed_without_point) {
   const auto index = static_cast<std::uint32_t>(&motion - interpretation_.motions.data());
-  list_.cuts.push_back({index, state_after().feed, feed_without_point});
+  list_.cuts.push_back({state_after().feed, index, feed_without_point});
 }
 
 bool EventLister::add_motion(const BlockMeaning& meaning, bool feed_without_point) {

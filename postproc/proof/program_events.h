@@ -92,8 +92,8 @@ struct EventAt {
 
 // A motion at feed rate whose place is known, in a state in which the path alone counts.
 struct Cut {
+  std::optional<double> feed;  // as ModalState::feed
   std::uint32_t motion = 0;
-  std::optional<double> feed;       // as ModalState::feed
   bool feed_without_point = false;  // as ModalState::feed_without_point
 };
 
@@ -103,8 +103,8 @@ struct ProgramEvents {
   std::vector<std::size_t> cuts_before;  // for each event, and once more for the end
   EventsBefore at_end;                   // what the next part takes over; of list_events
 
-  // Stretch k stands before event k; the last one after all events.
-  [[nodiscard]] std::size_t stretch_begin(std::size_t k) const {
+  // Section k stands before event k; the last one after all events.
+  [[nodiscard]] std::size_t section_begin(std::size_t k) const {
     return k > 0 ? cuts_before[k - 1] : 0;
   }
 };

@@ -1,71 +1,13 @@
 // The cutting moves between two events: same path within the tolerance, same feeds along it?
 #pragma once
 
-#include <cstdint>
 #include <optional>
-#include <span>
 #include <vector>
 
-#include "gcode/control/control.h"
-#include "geometry/basic/point.h"
-#include "geometry/basic/tolerance_kind.h"
 #include "geometry/distance/path_distance.h"
-#include "postproc/proof/event_violations.h"
-#include "postproc/proof/program_events.h"
+#include "postproc/proof/compared_section.h"
 
 namespace batten::postproc {
-
-// What the paths must keep.
-struct Promise {
-  // > 0. Where the old program says less for a part of itself, the part must keep that.
-  double tolerance_mm = 0.01;
-  geometry::ToleranceKind kind = geometry::ToleranceKind::kPath;
-  // Where the new path may be: on the other side it may be by kOverSide of the tolerance.
-  geometry::Side side = geometry::Side::kBoth;
-  // That has to take what is new; nullptr: nobody is asked.
-  const gcode::Control* target = nullptr;
-  bool twice = false;  // a second check of flat paths (geometry/band/band_region)
-
-  // The strict reading, when nothing else is said.
-  Promise(double tolerance, geometry::ToleranceKind reading = geometry::ToleranceKind::kPath,
-          geometry::Side allowed = geometry::Side::kBoth, const gcode::Control* control = nullptr)
-      : tolerance_mm(tolerance), kind(reading), side(allowed), target(control) {}
-};
-
-// Printing rounds a place on the path itself to either side of it.
-inline constexpr double kOverSide = 0.1;
-
-// One stretch of cutting moves at one feed that was compared, without the moves at its ends
-// that are the same in both programs.
-struct Stretch {
-  std::uint32_t old_first_block = 0, old_last_block = 0;
-  std::uint32_t new_first_block = 0, new_last_block = 0;
-  // Their lines; where one program has no moves there, that of the event before.
-  std::uint32_t old_first_line = 0, old_last_line = 0;
-  std::uint32_t new_first_line = 0, new_last_line = 0;
-  double tolerance_mm = 0;  // that it had to keep
-  geometry::PathComparison comparison;
-  double corner_mm = 0;    // band reading: greatest distance of a corner that was cut; 0: none was
-  bool in_region = false;  // what Promise::twice asks for: it is flat, and was found there
-  std::uint32_t old_worst_line = 0;  // where the greatest distance was met
-  std::uint32_t new_worst_line = 0;
-};
-
-// The moves of one program between two events.
-struct StretchSide {
-  const ReadProgram* read = nullptr;
-  std::span<const Cut> cuts;
-  // Where the tool stands before the first of them; not always known.
-  std::optional<geometry::Point3> start;
-  std::uint32_t line = 0;  // to name when there are no cuts: of the event before
-  // mm, of where it ends: what counts when there are no cuts.
-  std::optional<double> stated_tolerance_mm = {};
-};
-
-struct StretchResult {
-  std::vector<Stretch> stretches;  // one per feed that was compared; identical ones are left out
-  std::vector<Violation> violations;
-};
 
 // Neighbouring cuts of one feed are taken together. The feeds must come in the same order, and
 // the path of each must keep the tolerance by itself: so a feed begins where it began.
@@ -74,12 +16,12 @@ struct StretchResult {
 // changes within a feed, the new path is cut where the new program says the same tolerances in the
 // same order, and each part must keep its own; where it does not say them, or that fails, the whole
 // must keep the least of them. What the new program says is no more than a hint where to cut.
-[[nodiscard]] StretchResult compare_stretch(const StretchSide& before, const StretchSide& after,
-                                            const Promise& promise);
+[[nodiscard]] SectionComparison compare_section(const SectionSide& before, const SectionSide& after,
+                                                const Promise& promise);
 
 // Only the path, whatever the feeds are; within the least tolerance of all its parts.
-[[nodiscard]] geometry::PathComparison compare_whole_path(const StretchSide& before,
-                                                          const StretchSide& after,
+[[nodiscard]] geometry::PathComparison compare_whole_path(const SectionSide& before,
+                                                          const SectionSide& after,
                                                           const Promise& promise);
 
 // The cuts of one feed, with the matching that proves them.
@@ -91,8 +33,8 @@ struct MatchedPart {
 
 // The evidence for the strict reading, a part for each feed; none where both sides have no cuts.
 // Nothing where a part is not proved or the feeds are not the same.
-[[nodiscard]] std::optional<std::vector<MatchedPart>> match_stretch(const StretchSide& before,
-                                                                    const StretchSide& after,
+[[nodiscard]] std::optional<std::vector<MatchedPart>> match_section(const SectionSide& before,
+                                                                    const SectionSide& after,
                                                                     double tolerance_mm);
 
 }  // namespace batten::postproc

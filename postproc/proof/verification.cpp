@@ -33,8 +33,8 @@ class Follower {
 
   // Goes past event `index`, or to the end. Returns the moves on the way, with all events
   // between left out.
-  StretchSide move_to(std::size_t index) {
-    StretchSide side{&read_, {}, position(), line_};
+  SectionSide move_to(std::size_t index) {
+    SectionSide side{&read_, {}, position(), line_};
     const std::size_t begin = cut_;
     for (; next_event_ < index; ++next_event_) pass(list_.events[next_event_]);
     cut_ = list_.cuts_before[index];
@@ -182,9 +182,9 @@ class Verifier {
   struct Moves {
     EventPair from;  // the first events after the pair before: others than `to` are a gap
     EventPair to;
-    StretchSide before;
-    StretchSide after;
-    std::optional<StretchResult> result = {};
+    SectionSide before;
+    SectionSide after;
+    std::optional<SectionComparison> result = {};
 
     [[nodiscard]] bool any() const { return !before.cuts.empty() || !after.cuts.empty(); }
   };
@@ -222,7 +222,7 @@ class Verifier {
     }
   }
 
-  static std::optional<geometry::Point3> end_of(const StretchSide& side) {
+  static std::optional<geometry::Point3> end_of(const SectionSide& side) {
     if (side.cuts.empty()) return side.start;
     const auto& motions = side.read->interpretation->motions;
     return motions[side.cuts.back().motion].piece.end();
@@ -238,7 +238,7 @@ class Verifier {
     Follower new_follower(new_, new_list_);
     EventPair next;
     const auto add = [&](const EventPair& to) {
-      const StretchSide before = old_follower.move_to(to.before);
+      const SectionSide before = old_follower.move_to(to.before);
       moves_.push_back({next, to, before, new_follower.move_to(to.after)});
       next = {to.before + 1, to.after + 1};
     };
@@ -255,28 +255,29 @@ class Verifier {
     }
     if (threads_ == 1 || asked.size() < 2) return;
     parallel_for(threads_, asked.size(), [&](std::size_t i) {
-      asked[i]->result = compare_stretch(asked[i]->before, asked[i]->after, promise_);
+      asked[i]->result = compare_section(asked[i]->before, asked[i]->after, promise_);
     });
   }
 
   void compare_moves(Moves& now, bool can_compare) {
     if (!can_compare) return flush_stretch();
     if (!now.result) {
-      now.result = now.any() ? compare_stretch(now.before, now.after, promise_) : StretchResult{};
+      now.result =
+          now.any() ? compare_section(now.before, now.after, promise_) : SectionComparison{};
     }
     if (last_ != nullptr && now.from == now.to) join_if_event_moved(*last_, now);
     flush_stretch();
     last_ = &now;
   }
 
-  // Both stretches beside an event break the tolerance, but together they keep it: the path is
+  // Both sections beside an event break the tolerance, but together they keep it: the path is
   // right, and the event is at another position of it.
   void join_if_event_moved(Moves& first, Moves& second) const {
     const EventKind kind = old_event(first.to).event.kind;
     if (kind != EventKind::kWord && kind != EventKind::kText) return;
     if (first.result->violations.empty() || second.result->violations.empty()) return;
-    const StretchSide before = joined(first.before, second.before);
-    const StretchSide after = joined(first.after, second.after);
+    const SectionSide before = joined(first.before, second.before);
+    const SectionSide after = joined(first.after, second.after);
     if (compare_whole_path(before, after, promise_).verdict != Verdict::kProved) return;
     const double moved = first.result->violations.front().deviation_mm;
     first.result->violations = {
@@ -284,29 +285,29 @@ class Verifier {
     second.result->violations.clear();
   }
 
-  static StretchSide joined(const StretchSide& first, const StretchSide& second) {
-    StretchSide both = first;
+  static SectionSide joined(const SectionSide& first, const SectionSide& second) {
+    SectionSide both = first;
     const Cut* begin = first.cuts.empty() ? second.cuts.data() : first.cuts.data();
     both.cuts = {begin, first.cuts.size() + second.cuts.size()};
     return both;
   }
 
-  // The stretch before the last one can no longer turn out to be half of a moved event.
+  // The section before the last one can no longer turn out to be half of a moved event.
   void flush_stretch() {
     if (last_ == nullptr) return;
-    for (Stretch& stretch : last_->result->stretches) add_stretch(std::move(stretch));
+    for (ComparedSection& section : last_->result->sections) add_section(std::move(section));
     std::ranges::move(last_->result->violations, std::back_inserter(result_.violations));
     last_ = nullptr;
   }
 
-  void add_stretch(Stretch stretch) {
-    const geometry::PathComparison& found = stretch.comparison;
-    result_.corner_mm = std::max(result_.corner_mm, stretch.corner_mm);
+  void add_section(ComparedSection section) {
+    const geometry::PathComparison& found = section.comparison;
+    result_.corner_mm = std::max(result_.corner_mm, section.corner_mm);
     if (found.verdict == Verdict::kProved && found.bounds.at_most > result_.deviation_mm) {
       result_.deviation_mm = found.bounds.at_most;
-      result_.deviation_line = stretch.old_worst_line;
+      result_.deviation_line = section.old_worst_line;
     }
-    result_.stretches.push_back(std::move(stretch));
+    result_.sections.push_back(std::move(section));
   }
 
   const ReadProgram& old_;
@@ -344,18 +345,19 @@ bool is_same(const geometry::Arc& a, const geometry::Arc& b) {
          a.sweep * b.sweep > 0;
 }
 
-// A violation for each arc of a stretch that was compared which the target refuses
+// A violation for each arc of a section that was compared which the target refuses
 // (gcode/controls/arc_rules.h).
-void add_refused_arcs(const ReadProgram& before, const ReadProgram& after, const Stretch& stretch,
-                      const gcode::Control& target, std::vector<Violation>& violations) {
+void add_refused_arcs(const ReadProgram& before, const ReadProgram& after,
+                      const ComparedSection& section, const gcode::Control& target,
+                      std::vector<Violation>& violations) {
   const auto is_old = [&](const geometry::Arc& arc) {
-    return std::ranges::any_of(motions_in(before, stretch.old_first_block, stretch.old_last_block),
+    return std::ranges::any_of(motions_in(before, section.old_first_block, section.old_last_block),
                                [&](const gcode::Motion& m) {
                                  return m.piece.arc() != nullptr && is_same(*m.piece.arc(), arc);
                                });
   };
   for (const gcode::Motion& m :
-       motions_in(after, stretch.new_first_block, stretch.new_last_block)) {
+       motions_in(after, section.new_first_block, section.new_last_block)) {
     const geometry::Arc* arc = m.piece.arc();
     if (arc == nullptr) continue;
     const auto& meaning = after.interpretation->blocks[m.block];
@@ -364,7 +366,7 @@ void add_refused_arcs(const ReadProgram& before, const ReadProgram& after, const
     if (why.empty() || is_old(*arc)) continue;
     const std::string message =
         fmt::format("{} refuses this arc: {}; expected one that it runs", target.name, why);
-    violations.push_back({ViolationKind::kTarget, "arc-refused", stretch.old_first_line,
+    violations.push_back({ViolationKind::kTarget, "arc-refused", section.old_first_line,
                           after.program->blocks[m.block].line, 0, message});
   }
 }
@@ -501,8 +503,8 @@ Verification verify(const ReadProgram& before, const ReadProgram& after, const P
   Verification found = Verifier(before, after, promise, threads).run();
   if (promise.target == nullptr) return found;
   // Blocks of the old program are its own affair: they are copied.
-  for (const Stretch& stretch : found.stretches) {
-    add_refused_arcs(before, after, stretch, *promise.target, found.violations);
+  for (const ComparedSection& section : found.sections) {
+    add_refused_arcs(before, after, section, *promise.target, found.violations);
   }
   add_long_lines(before, after, *promise.target, found.violations);
   add_foreign_comments(before, after, *promise.target, found.violations);

@@ -3,7 +3,7 @@
 //
 // What is compared, in order: every block that acts (M, S, T words, coordinate systems,
 // dwells, opaque blocks ..) must stand in both, the same; rapids must have the same ends; and
-// between them each stretch of cutting moves at one feed must keep the tolerance, both ways
+// between them each section of cutting moves at one feed must keep the tolerance, both ways
 // and in order (geometry/distance/path_distance). What counts as an event:
 // postproc/proof/program_events.h.
 #pragma once
@@ -21,18 +21,18 @@
 namespace batten::postproc {
 
 struct Verification {
-  std::vector<Violation> violations;  // empty: proved
-  std::vector<Stretch> stretches;     // in order; identical ones are not listed
-  double deviation_mm = 0;            // greatest proved bound
-  std::uint32_t deviation_line = 0;   // of the old program
-  double corner_mm = 0;               // greatest of the stretches
+  std::vector<Violation> violations;      // empty: proved
+  std::vector<ComparedSection> sections;  // in order; identical ones are not listed
+  double deviation_mm = 0;                // greatest proved bound
+  std::uint32_t deviation_line = 0;       // of the old program
+  double corner_mm = 0;                   // greatest of the sections
   std::size_t events_compared = 0;
   [[nodiscard]] bool proved() const { return violations.empty(); }
 };
 
 // Feeds are the same when they differ by less than a millionth: they are printed again. Requires a
 // tolerance > 0 (throws std::invalid_argument otherwise). `threads`: 0: all cores; the result is
-// the same for any number, since stretches do not look at each other.
+// the same for any number, since sections do not look at each other.
 //
 // Programs of two languages are compared in the words that all have
 // (list_common_events); their rapids end at the same place to within what printing a

@@ -61,15 +61,15 @@ struct PageSide {
   std::vector<std::optional<double>> feeds;  // of the motions that are cuts
 };
 
-// The motions that are in no stretch: those of the one program are those of the other, in order.
+// The motions that are in no section: those of the one program are those of the other, in order.
 std::vector<std::uint32_t> copied_motions(
-    const PageSide& side, const std::vector<std::pair<std::uint32_t, std::uint32_t>>& stretches) {
+    const PageSide& side, const std::vector<std::pair<std::uint32_t, std::uint32_t>>& sections) {
   std::vector<std::uint32_t> copied;
   std::size_t next = 0;
   for (std::uint32_t i = 0; i < side.feeds.size(); ++i) {
     const std::uint32_t block = side.motion(i).block;
-    while (next < stretches.size() && stretches[next].second < block) ++next;
-    const bool inside = next < stretches.size() && stretches[next].first <= block;
+    while (next < sections.size() && sections[next].second < block) ++next;
+    const bool inside = next < sections.size() && sections[next].first <= block;
     if (!inside || !side.is_cut(i)) copied.push_back(i);
   }
   return copied;
@@ -85,25 +85,25 @@ class PagePathBuilder {
         verification_(verification),
         rows_(rows),
         options_(options) {
-    for (const Stretch& s : verification.stretches) {
-      old_stretches_.emplace_back(s.old_first_block, s.old_last_block);
-      new_stretches_.emplace_back(s.new_first_block, s.new_last_block);
+    for (const ComparedSection& s : verification.sections) {
+      old_sections_.emplace_back(s.old_first_block, s.old_last_block);
+      new_sections_.emplace_back(s.new_first_block, s.new_last_block);
     }
   }
 
   PagePath build() {
-    const auto old_copied = copied_motions(old_, old_stretches_);
-    const auto new_copied = copied_motions(new_, new_stretches_);
+    const auto old_copied = copied_motions(old_, old_sections_);
+    const auto new_copied = copied_motions(new_, new_sections_);
     same_copied_ = old_copied.size() == new_copied.size();
-    std::size_t stretch = 0;
+    std::size_t section = 0;
     for (std::size_t k = 0; k < old_copied.size(); ++k) {
       const std::uint32_t block = old_.motion(old_copied[k]).block;
-      while (stretch < old_stretches_.size() && old_stretches_[stretch].first < block) {
-        add_stretch(stretch++);
+      while (section < old_sections_.size() && old_sections_[section].first < block) {
+        add_section(section++);
       }
       add_copied(old_copied[k], same_copied_ ? new_copied[k] : 0);
     }
-    while (stretch < old_stretches_.size()) add_stretch(stretch++);
+    while (section < old_sections_.size()) add_section(section++);
     flush_copied();
     thin();
     return std::move(result_);
@@ -170,10 +170,10 @@ class PagePathBuilder {
 
   // --- rewritten moves ------------------------------------------------------------------------
 
-  void add_stretch(std::size_t index) {
+  void add_section(std::size_t index) {
     flush_copied();
-    const auto [old_first, old_last] = old_stretches_[index];
-    const auto [new_first, new_last] = new_stretches_[index];
+    const auto [old_first, old_last] = old_sections_[index];
+    const auto [new_first, new_last] = new_sections_[index];
     const auto old_motions = old_.cuts_in(old_first, old_last);
     const auto new_motions = new_.cuts_in(new_first, new_last);
     const geometry::Path before = old_.path_of(old_motions);
@@ -183,19 +183,19 @@ class PagePathBuilder {
         band ? geometry::match_in_band(before, after, options_.tolerance_mm)
              : geometry::match_paths(before, after, options_.tolerance_mm);
     // The same paths give the same matching, but for long ones, which are proved part by part. They
-    // are not the same where one of them is empty: a stretch then names a block beside it.
+    // are not the same where one of them is empty: a section then names a block beside it.
     constexpr double kNear = 0.02;  // of the tolerance: as far as bounds are from the truth
-    const auto& proved = verification_.stretches[index].comparison;
+    const auto& proved = verification_.sections[index].comparison;
     const double apart = matching.comparison.bounds.at_most - proved.bounds.at_most;
     if (before.empty() || after.empty() ||
-        !(std::abs(apart) <= kNear * verification_.stretches[index].tolerance_mm)) {
-      ++result_.stretches_not_shown;
+        !(std::abs(apart) <= kNear * verification_.sections[index].tolerance_mm)) {
+      ++result_.sections_not_shown;
       return;
     }
-    ++result_.stretches;
+    ++result_.sections;
     result_.pairs += matching.pairs.size();
     add_pairs(matching.pairs, {old_motions, before}, {new_motions, after});
-    add_region(before, after, verification_.stretches[index].tolerance_mm,
+    add_region(before, after, verification_.sections[index].tolerance_mm,
                options_.most_region_edges, result_.region);
   }
 
@@ -287,8 +287,8 @@ class PagePathBuilder {
   const Verification& verification_;
   std::span<const PageLines> rows_;
   PagePathOptions options_;
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> old_stretches_;
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> new_stretches_;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> old_sections_;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> new_sections_;
   bool same_copied_ = false;
   geometry::Path chain_;  // copied cuts that follow each other
   std::vector<std::pair<std::uint32_t, std::uint32_t>> chain_motions_;
@@ -512,7 +512,7 @@ ProgramSpeeds::ProgramSpeeds(const ReadProgram& read, const ProgramEvents& event
     : places_(read.interpretation->motions.size()) {
   for (std::size_t k = 0; k <= events.events.size(); ++k) {
     const Cut* cuts = events.cuts.data();
-    add_chain(read, cuts + events.stretch_begin(k), cuts + events.cuts_before[k], machine);
+    add_chain(read, cuts + events.section_begin(k), cuts + events.cuts_before[k], machine);
   }
 }
 

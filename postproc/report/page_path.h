@@ -53,10 +53,10 @@ struct PageLines {
 struct PagePath {
   std::vector<PageVertex> vertices;
   double drawn_within = 0;  // mm: vertices were left out where the rest says it so well
-  std::size_t stretches = 0;
-  std::size_t pairs = 0;                // of all certificates
-  std::size_t stretches_not_shown = 0;  // their matching could not be made again
-  PageRegion region;                    // of the stretches that are shown
+  std::size_t sections = 0;
+  std::size_t pairs = 0;               // of all certificates
+  std::size_t sections_not_shown = 0;  // their matching could not be made again
+  PageRegion region;                   // of the sections that are shown
 };
 
 struct PageTuning {

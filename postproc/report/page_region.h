@@ -21,12 +21,12 @@ struct PageRegion {
   // mm; outer ones counter-clockwise as seen against the axis of their plane, holes clockwise.
   std::vector<std::vector<geometry::Point3>> polygons;
   std::size_t edges = 0;     // of the old paths that they are about
-  std::size_t drawn = 0;     // compared stretches that have their region here
+  std::size_t drawn = 0;     // compared sections that have their region here
   std::size_t in_space = 0;  // that have none since they do not lie in one plane across an axis
   std::size_t left_out = 0;  // with which there would be more than `most_edges`
 };
 
-// Adds the region of the old path of a compared stretch, or counts why it has none.
+// Adds the region of the old path of a compared section, or counts why it has none.
 void add_region(std::span<const geometry::PathPiece> before,
                 std::span<const geometry::PathPiece> after, double tolerance_mm,
                 std::size_t most_edges, PageRegion& region);

@@ -332,7 +332,7 @@ class TextVerifier {
     }
     all.corner_mm = std::max(all.corner_mm, found.corner_mm);
     all.events_compared += found.events_compared;
-    std::ranges::move(found.stretches, std::back_inserter(all.stretches));
+    std::ranges::move(found.sections, std::back_inserter(all.sections));
     std::ranges::move(found.violations, std::back_inserter(all.violations));
   }
 

@@ -25,11 +25,11 @@ double together(double a, double length_a, double b, double length_b) {
 class Reporter {
  public:
   Reporter(const ProgramPart& part, const PartRuns& runs, double user_tolerance_mm,
-           std::span<const Stretch> stretches, bool proved)
+           std::span<const ComparedSection> compared, bool proved)
       : part_(part),
         of_part_(runs),
         user_tolerance_(user_tolerance_mm),
-        stretches_(stretches),
+        compared_(compared),
         proved_(proved) {}
 
   std::vector<RunReport> run() {
@@ -159,16 +159,16 @@ class Reporter {
 
   // Sections are asked for in the order of the program.
   [[nodiscard]] double deviation_within(const Section& section) {
-    const auto ends_before = [&](const Stretch& stretch) {
-      return stretch.old_last_block < section.first_block;
+    const auto ends_before = [&](const ComparedSection& compared) {
+      return compared.old_last_block < section.first_block;
     };
-    while (next_ < stretches_.size() && ends_before(stretches_[next_])) ++next_;
+    while (next_ < compared_.size() && ends_before(compared_[next_])) ++next_;
     double deviation = 0;
-    for (std::size_t i = next_; i < stretches_.size(); ++i) {
-      const Stretch& stretch = stretches_[i];
-      if (ends_before(stretch)) continue;
-      if (stretch.old_first_block > section.last_block) break;
-      deviation = std::max(deviation, stretch.comparison.bounds.at_most);
+    for (std::size_t i = next_; i < compared_.size(); ++i) {
+      const ComparedSection& compared = compared_[i];
+      if (ends_before(compared)) continue;
+      if (compared.old_first_block > section.last_block) break;
+      deviation = std::max(deviation, compared.comparison.bounds.at_most);
     }
     return deviation;
   }
@@ -204,10 +204,10 @@ class Reporter {
   const ProgramPart& part_;
   const PartRuns& of_part_;
   double user_tolerance_;  // mm
-  std::span<const Stretch> stretches_;
+  std::span<const ComparedSection> compared_;
   bool proved_;
   std::vector<RunReport> runs_;
-  std::size_t next_ = 0;  // stretches before it end before the section that was asked for last
+  std::size_t next_ = 0;  // those before it end before the section that was asked for last
 };
 
 }  // namespace
@@ -221,9 +221,9 @@ PathFigures& PathFigures::operator+=(const PathFigures& other) {
 }
 
 std::vector<RunReport> report_runs(const ProgramPart& part, const PartRuns& runs,
-                                   double user_tolerance_mm, std::span<const Stretch> stretches,
-                                   bool proved) {
-  return Reporter(part, runs, user_tolerance_mm, stretches, proved).run();
+                                   double user_tolerance_mm,
+                                   std::span<const ComparedSection> compared, bool proved) {
+  return Reporter(part, runs, user_tolerance_mm, compared, proved).run();
 }
 
 std::vector<StatedFrom> stated_in(const gcode::Program& part,

@@ -72,10 +72,11 @@ struct RunReport {
   PathFigures path_after;
 };
 
-// What became of the runs, in the order of the program; `stretches` and `proved` of the proof.
+// What became of the runs, in the order of the program; `compared` and `proved` of the proof.
 [[nodiscard]] std::vector<RunReport> report_runs(const ProgramPart& part, const PartRuns& runs,
                                                  double user_tolerance_mm,
-                                                 std::span<const Stretch> stretches, bool proved);
+                                                 std::span<const ComparedSection> compared,
+                                                 bool proved);
 
 // What the program says of how exact it has to be, from a line on until the next of these.
 struct StatedFrom {

@@ -114,9 +114,9 @@ class WindowWork {
       done.outcome = WindowOutcome::kNotProvedAlone;
       return;
     }
-    const std::vector<Stretch> stretches = std::exchange(done.proof.verification.stretches, {});
-    done.runs =
-        report_runs(part, runs, setting_.options.tolerance_mm, stretches, done.proof.proved);
+    const std::vector<ComparedSection> compared =
+        std::exchange(done.proof.verification.sections, {});
+    done.runs = report_runs(part, runs, setting_.options.tolerance_mm, compared, done.proof.proved);
     done.stated = stated_in(part.program, part.meaning);
     done.causes.add(part.program, part.meaning, runs.sections, grouping_of(setting_.options),
                     reject_reasons(runs));
@@ -259,8 +259,14 @@ class Prover {
     ProvedText round;
     AssembledText assembled =
         assemble(part_.program, runs_.sections, runs_.works, additions_, *options_.target);
-    round.text = std::move(assembled.text);
-    AddedLines added = take_added_lines(part_.program, round.text, additions_.words);
+    const bool adds_nothing = additions_.words.empty();  // then the text itself is proved
+    AddedLines added;
+    if (adds_nothing) {
+      added.text = std::move(assembled.text);
+    } else {
+      round.text = std::move(assembled.text);
+      added = take_added_lines(part_.program, round.text, additions_.words);
+    }
     const gcode::SourceText written(part_.program.source.name(), std::move(added.text));
     gcode::Diagnostics ignored;
     gcode::Program program = read_text(written, ignored);
@@ -272,9 +278,8 @@ class Prover {
     const std::vector<std::uint32_t> begins = blocks_at(assembled.begins, program);
     // Between lines that a profile adds nothing is cut: these lines are gone where it is compared.
     // The proof does not rely on the cuts: its parts together are the whole, wherever they end.
-    const bool may_cut = additions_.words.empty();
     const std::vector<std::uint32_t> new_cuts =
-        may_cut ? places_of(runs_.cuts, begins) : std::vector<std::uint32_t>();
+        adds_nothing ? places_of(runs_.cuts, begins) : std::vector<std::uint32_t>();
     if (!new_cuts.empty()) {
       before.cuts = runs_.cuts;
       after.cuts = new_cuts;
@@ -286,7 +291,7 @@ class Prover {
     const Promise promise(options_.tolerance_mm, options_.tolerance_kind, options_.side,
                           options_.target);
     round.verification = verify(before, after, promise, options_.threads);
-    if (may_cut && !round.verification.proved()) {
+    if (adds_nothing && !round.verification.proved()) {
       add_violations_of_pieces(before, after, begins, promise, round.verification);
     }
     for (const auto& more : {added.violations, events_in_brackets(after, added.brackets)}) {
@@ -298,10 +303,11 @@ class Prover {
     round.blocks = program.blocks.size();
     round.proved = round.verification.proved();
     // Lines of a profile stand between the sections; such a program is proved in one.
-    if (round.proved && additions_.words.empty()) {
+    if (round.proved && adds_nothing) {
       round.near_edges = near_edges(WrittenSections{after, begins});
     }
     if (part_.window) round.after = {std::move(control), events_before_next(after)};
+    if (adds_nothing) round.text = written.text();
     round.read = read_as_written(round.text, {std::move(program), std::move(meaning)});
     return round;
   }

@@ -136,7 +136,7 @@ function smoothPage(report, path, columns) {
 // --- verify -------------------------------------------------------------------------------------
 
 function comparedFact(columns) {
-  return ['Compared', `${count(columns.stretches, 'changed stretch', 'changed stretches')} by ${count(columns.pairs, 'pair', 'pairs')} of places, `
+  return ['Compared', `${count(columns.sections, 'changed section', 'changed sections')} by ${count(columns.pairs, 'pair', 'pairs')} of places, `
     + `${count(columns.events ?? 0, 'acting word or block', 'acting words and blocks')}`];
 }
 
@@ -146,7 +146,7 @@ function proofNotes(proved, otherwise, columns, path) {
       + 'paths run straight, so no place between them is further off than the pairs. All other blocks do the same.' : otherwise),
     element('p', {}, 'Not part of the proof is what the control itself adds, such as blending at corners. Cutting times are predictions of a model.'),
   ];
-  if (columns.stretches_not_shown > 0) notes.push(element('p', {}, `${columns.stretches_not_shown} compared stretches are not drawn on this page.`));
+  if (columns.sections_not_shown > 0) notes.push(element('p', {}, `${columns.sections_not_shown} compared sections are not drawn on this page.`));
   return [...notes, ...regionNotes(path.region).map((text) => element('p', {}, text))];
 }
 

@@ -15,13 +15,14 @@ namespace batten::geometry {
 namespace {
 
 // The vertices between the edges of a chain of lines.
-std::vector<PassedPlace> passed(const std::vector<Point3>& points) {
-  std::vector<PassedPlace> places;
+PassedPlaces passed(const std::vector<Point3>& points) {
+  PassedPlaces places;
   double length = 0;
   for (std::size_t i = 1; i + 1 < points.size(); ++i) {
     length += (points[i] - points[i - 1]).norm();
-    places.push_back({points[i], length});
+    places.lengths.push_back(length);
   }
+  places.place_at = [points](std::size_t i) { return points[i + 1]; };
   return places;
 }
 
@@ -94,12 +95,12 @@ TEST(Joints, AreNotALapApart) {
 }
 
 TEST(Joints, AreNotWhereAPathHasAGap) {
-  std::vector<PassedPlace> a = passed(wave(101, 0, 1, 1));
-  const std::vector<PassedPlace> b = a;
+  PassedPlaces a = passed(wave(101, 0, 1, 1));
+  const PassedPlaces b = a;
   EXPECT_EQ(joints_of(a, b, 10).size(), 9U);
-  for (PassedPlace& each : a) {
-    each.place = Point3::Constant(std::numeric_limits<double>::quiet_NaN());
-  }
+  a.place_at = [](std::size_t) {
+    return Point3::Constant(std::numeric_limits<double>::quiet_NaN()).eval();
+  };
   EXPECT_TRUE(joints_of(a, b, 10).empty());
   EXPECT_TRUE(joints_of({}, b, 10).empty());
 }

@@ -39,8 +39,8 @@ TEST(StatedToleranceProof, NamesItInTheViolationAndInTheSection) {
   EXPECT_NE(broken.violations[0].message.find("allowed 0.005 mm"), std::string::npos)
       << broken.violations[0].message;
   const Verification kept = verdict(line_program(comment, 0), line_program(comment, 0.004), 0.01);
-  ASSERT_EQ(kept.stretches.size(), 1U);
-  EXPECT_EQ(kept.stretches[0].tolerance_mm, 0.005);
+  ASSERT_EQ(kept.sections.size(), 1U);
+  EXPECT_EQ(kept.sections[0].tolerance_mm, 0.005);
 }
 
 // What the new program says is not believed.
@@ -67,13 +67,13 @@ TEST(StatedToleranceProof, IsThatOfEachPartOfAFeed) {
   const std::string before = two_parts(fine, 0, coarse, 0);
   const Verification both = verdict(before, two_parts(fine, 0.004, coarse, 0.015), 0.05);
   EXPECT_TRUE(both.proved());
-  ASSERT_EQ(both.stretches.size(), 2U);
-  EXPECT_EQ(both.stretches[0].tolerance_mm, 0.005);
-  EXPECT_EQ(both.stretches[1].tolerance_mm, 0.02);
+  ASSERT_EQ(both.sections.size(), 2U);
+  EXPECT_EQ(both.sections[0].tolerance_mm, 0.005);
+  EXPECT_EQ(both.sections[1].tolerance_mm, 0.02);
   EXPECT_FALSE(verdict(before, two_parts(fine, 0.008, coarse, 0), 0.05).proved());
   EXPECT_FALSE(verdict(before, two_parts(fine, 0, coarse, 0.022), 0.05).proved());
   // Above the promised one there is no part.
-  EXPECT_EQ(verdict(before, two_parts(fine, 0.001, coarse, 0.001), 0.004).stretches.size(), 1U);
+  EXPECT_EQ(verdict(before, two_parts(fine, 0.001, coarse, 0.001), 0.004).sections.size(), 1U);
 }
 
 // Without the comments, or with others, nothing says where a part of the new path ends.

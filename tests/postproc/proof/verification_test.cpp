@@ -345,9 +345,9 @@ TEST(Verify, SaysHowFarAProvedPathIs) {
   ASSERT_TRUE(found.proved());
   EXPECT_NEAR(found.deviation_mm, 0.006, 0.0003);
   EXPECT_TRUE(found.deviation_line == 11 || found.deviation_line == 12) << found.deviation_line;
-  ASSERT_EQ(found.stretches.size(), 1U);
-  EXPECT_EQ(found.stretches.front().old_first_block, 10U);  // line 11
-  EXPECT_EQ(found.stretches.front().old_last_block, 11U);
+  ASSERT_EQ(found.sections.size(), 1U);
+  EXPECT_EQ(found.sections.front().old_first_block, 10U);  // line 11
+  EXPECT_EQ(found.sections.front().old_last_block, 11U);
 }
 
 // A flat section, and one that climbs.
@@ -362,16 +362,16 @@ TEST(Verify, LooksASecondTimeAtFlatSectionsWhereThatIsAsked) {
     const Verification found =
         verify(ReadText(program("0", "1")).read(), ReadText(program("0.008", "1")).read(), promise);
     EXPECT_TRUE(found.proved());
-    ASSERT_EQ(found.stretches.size(), 2U);
-    EXPECT_EQ(found.stretches[0].in_region, twice);
-    EXPECT_FALSE(found.stretches[1].in_region);
+    ASSERT_EQ(found.sections.size(), 2U);
+    EXPECT_EQ(found.sections[0].in_region, twice);
+    EXPECT_FALSE(found.sections[1].in_region);
   }
 }
 
 TEST(Verify, ListsNoStretchWhereNothingChanged) {
   const Verification found = verified(kProgram, kProgram);
   EXPECT_TRUE(found.proved());
-  EXPECT_TRUE(found.stretches.empty());
+  EXPECT_TRUE(found.sections.empty());
   EXPECT_EQ(found.deviation_mm, 0);
 }
 
@@ -422,7 +422,7 @@ TEST(Verify, FindsAPathThatCrossesItselfWhereTheOldOneDoesNot) {
 
 // --- any number of threads ------------------------------------------------------------------
 
-// Many stretches, each between two rapids.
+// Many sections, each between two rapids.
 std::string rows(double shift, int shifted_row) {
   std::string text = "G21 G90 G17\nM3 S1000\n";
   for (int row = 0; row < 30; ++row) {
@@ -440,10 +440,10 @@ void expect_same(const Verification& a, const Verification& b) {
   EXPECT_EQ(a.deviation_mm, b.deviation_mm);
   EXPECT_EQ(a.deviation_line, b.deviation_line);
   EXPECT_EQ(a.events_compared, b.events_compared);
-  ASSERT_EQ(a.stretches.size(), b.stretches.size());
-  for (std::size_t i = 0; i < a.stretches.size(); ++i) {
-    EXPECT_EQ(a.stretches[i].old_first_block, b.stretches[i].old_first_block);
-    EXPECT_EQ(a.stretches[i].comparison.bounds.at_most, b.stretches[i].comparison.bounds.at_most);
+  ASSERT_EQ(a.sections.size(), b.sections.size());
+  for (std::size_t i = 0; i < a.sections.size(); ++i) {
+    EXPECT_EQ(a.sections[i].old_first_block, b.sections[i].old_first_block);
+    EXPECT_EQ(a.sections[i].comparison.bounds.at_most, b.sections[i].comparison.bounds.at_most);
   }
   ASSERT_EQ(a.violations.size(), b.violations.size());
   for (std::size_t i = 0; i < a.violations.size(); ++i) {

@@ -86,7 +86,7 @@ TEST_F(HtmlReport, NamesAndMessagesCannotLeaveTheirPlace) {
 
 TEST_F(HtmlReport, IsTheSameForTheSameResult) { EXPECT_EQ(page(), page()); }
 
-// A page that did not read the curves could match no stretch of the new path with the old one.
+// A page that did not read the curves could match no section of the new path with the old one.
 TEST_F(HtmlReport, DrawsCurvesOfTheTarget) {
   options_.target = gcode::find_control("fanuc");
   options_.decimals = gcode::Decimals{};
@@ -96,8 +96,8 @@ TEST_F(HtmlReport, DrawsCurvesOfTheTarget) {
   result_ = smooth_program(source_, options_, {});
   ASSERT_NE(result_.text.find("G06.2"), std::string::npos);
   const Json path = data()["path"];
-  EXPECT_EQ(path["stretches"], 1);
-  EXPECT_EQ(path["stretches_not_shown"], 0);
+  EXPECT_EQ(path["sections"], 1);
+  EXPECT_EQ(path["sections_not_shown"], 0);
 }
 
 TEST_F(HtmlReport, DrawsTheRegionOfWhatIsFlat) {

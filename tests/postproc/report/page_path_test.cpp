@@ -49,8 +49,8 @@ TEST(PagePath, ShowsTheDistanceThatTheProofFound) {
   EXPECT_NEAR(worst.offset.y(), -0.01, 1e-6);
   EXPECT_EQ(worst.old_line, 4U);
   EXPECT_EQ(worst.new_line, 3U);
-  EXPECT_EQ(path.stretches, 1U);
-  EXPECT_EQ(path.stretches_not_shown, 0U);
+  EXPECT_EQ(path.sections, 1U);
+  EXPECT_EQ(path.sections_not_shown, 0U);
 }
 
 TEST(PagePath, FollowsTheOldPathFromEndToEnd) {
@@ -82,7 +82,7 @@ TEST(PagePath, TellsWhichRunAPlaceBelongsTo) {
 
 TEST(PagePath, HasNoDeviationWhereMovesAreCopied) {
   const PagePath path = path_of(kKinked, kKinked, 0.02);
-  EXPECT_EQ(path.stretches, 0U);
+  EXPECT_EQ(path.sections, 0U);
   for (const PageVertex& v : path.vertices) {
     EXPECT_TRUE(v.offset.isZero(0));
     EXPECT_NE(v.step, PageStep::kRewritten);

@@ -114,7 +114,7 @@ TEST(PageRegion, IsNotDrawnInSpaceNorBeyondItsEdges) {
   EXPECT_EQ(region.polygons.size(), 2U);
 }
 
-// Of two compared stretches each with the tolerance that it has to keep.
+// Of two compared sections each with the tolerance that it has to keep.
 TEST(PageRegion, HasTheToleranceThatWasPromised) {
   const tests::Interpreted before("G21 G90\nG0 X0 Y0 Z0\nG1 X5 F600\nX10 Y0.01\nX20 Y0\n");
   const tests::Interpreted after("G21 G90\nG0 X0 Y0 Z0\nG1 X20 F600\n");

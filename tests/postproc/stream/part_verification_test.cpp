@@ -38,27 +38,27 @@ std::optional<VerifiedTexts> in_parts(const std::string& before, const std::stri
   return found.as_whole ? std::nullopt : std::optional(std::move(found));
 }
 
-std::string words_of(const Stretch& stretch) {
-  const geometry::PathComparison& found = stretch.comparison;
-  return fmt::format("{}-{} {}-{} {} {:a} {:a} {} {:a} {} {}", stretch.old_first_line,
-                     stretch.old_last_line, stretch.new_first_line, stretch.new_last_line,
+std::string words_of(const ComparedSection& section) {
+  const geometry::PathComparison& found = section.comparison;
+  return fmt::format("{}-{} {}-{} {} {:a} {:a} {} {:a} {} {}", section.old_first_line,
+                     section.old_last_line, section.new_first_line, section.new_last_line,
                      static_cast<int>(found.verdict), found.bounds.at_least, found.bounds.at_most,
-                     found.certificate_size, stretch.corner_mm, stretch.old_worst_line,
-                     stretch.new_worst_line);
+                     found.certificate_size, section.corner_mm, section.old_worst_line,
+                     section.new_worst_line);
 }
 
 std::vector<std::string> words_of(const Verification& verification) {
   std::vector<std::string> words = {
       fmt::format("{} events, {:a} near {}, {:a}", verification.events_compared,
                   verification.deviation_mm, verification.deviation_line, verification.corner_mm)};
-  for (const Stretch& stretch : verification.stretches) words.push_back(words_of(stretch));
+  for (const ComparedSection& section : verification.sections) words.push_back(words_of(section));
   return words;
 }
 
 constexpr std::size_t kNeverCut = 1'000'000;  // no run has as many blocks
 
 // Whether it is proved in parts of some size. What is proved there the whole proves, with the same
-// bounds for the same stretches.
+// bounds for the same sections.
 bool compare_both_ways(const std::string& before, const std::string& after,
                        const Promise& promise) {
   const VerifiedTexts whole = verified(before, after, promise);
@@ -180,14 +180,14 @@ TEST(PartVerification, ProvesPassesOfAnyNumberOfBlocksAndSeesAStateThatDiffersIn
   for (const std::size_t blocks : {1, 2, 3, 5, 6, 7, 8, 11, 100}) {
     const auto parts = in_parts(passes(8), passes(8), {0.01}, blocks, kNeverCut);
     ASSERT_TRUE(parts) << blocks;
-    EXPECT_TRUE(parts->verification.stretches.empty());
+    EXPECT_TRUE(parts->verification.sections.empty());
     for (const char* words : {"G18\n", "M8\n", "G91 G1 X0\nG90\n", "G61\n", "S901\n", "/ M1\n"}) {
       EXPECT_FALSE(in_parts(passes(8), passes(8, words), {0.01}, blocks, kNeverCut)) << words;
     }
   }
 }
 
-// A stretch that has moves in one program only is told with the line of the rapid before it, which
+// A section that has moves in one program only is told with the line of the rapid before it, which
 // is in another part.
 TEST(PartVerification, NamesALineWhereAProgramHasNoMoves) {
   const std::string head = "G21 G90 G17\nM3 S900\nG0 X1 Y0 Z0\nG0 X0\n";
@@ -196,9 +196,9 @@ TEST(PartVerification, NamesALineWhereAProgramHasNoMoves) {
   EXPECT_TRUE(compare_both_ways(before, after, {0.01}));
   const auto parts = in_parts(before, after, {0.01}, 1, kNeverCut);
   ASSERT_TRUE(parts);
-  ASSERT_EQ(parts->verification.stretches.size(), 1U);
-  const Stretch& stretch = parts->verification.stretches[0];
-  EXPECT_TRUE(words_of(stretch).starts_with("5-6 4-4 ")) << words_of(stretch);
+  ASSERT_EQ(parts->verification.sections.size(), 1U);
+  const ComparedSection& section = parts->verification.sections[0];
+  EXPECT_TRUE(words_of(section).starts_with("5-6 4-4 ")) << words_of(section);
 }
 
 // What stands behind the mark that ends the program is copied, and is asked for line by line.
@@ -263,11 +263,11 @@ TEST(PartVerification, ProvesALongRunInPieces) {
     const auto parts = in_parts(before, smoothed.text, promise, blocks, 700);
     ASSERT_TRUE(parts) << blocks;
     const Verification& found = parts->verification;
-    EXPECT_GT(found.stretches.size(), 2U);
+    EXPECT_GT(found.sections.size(), 2U);
     EXPECT_EQ(found.events_compared, whole.verification.events_compared);
     EXPECT_LE(found.deviation_mm, promise.tolerance_mm);
     EXPECT_NEAR(found.deviation_mm, whole.verification.deviation_mm, 0.02 * promise.tolerance_mm);
-    const std::vector<Stretch>& all = found.stretches;
+    const std::vector<ComparedSection>& all = found.sections;
     for (std::size_t i = 0; i + 1 < all.size(); ++i) {
       EXPECT_EQ(all[i].comparison.verdict, geometry::Verdict::kProved);
       EXPECT_LT(all[i].old_last_line, all[i + 1].old_first_line);
@@ -345,7 +345,7 @@ TEST(PartVerification, CutsNoRunWhoseSideIsAskedFor) {
   const Promise left(0.01, geometry::ToleranceKind::kPath, geometry::Side::kLeft);
   const auto parts = in_parts(one_run(places), one_run(places, "(end)\nM30\n"), left, 50, 100);
   ASSERT_TRUE(parts);
-  EXPECT_TRUE(parts->verification.stretches.empty());
+  EXPECT_TRUE(parts->verification.sections.empty());
 }
 
 }  // namespace

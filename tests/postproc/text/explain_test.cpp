@@ -42,9 +42,10 @@ Ids ids_in_sources_of_the_reader() {
 Ids ids_in_sources_of_the_verifier() {
   Ids ids = {"distance"};  // one word
   add_ids_in(source_folder() / "postproc/stream/assembly.cpp", ids);
-  add_ids_in(source_folder() / "postproc/proof/event_violations.cpp", ids);
-  add_ids_in(source_folder() / "postproc/proof/verification.cpp", ids);
-  add_ids_in(source_folder() / "postproc/proof/section_comparison.cpp", ids);
+  for (const std::string_view file : {"event_violations", "verification", "section_comparison",
+                                      "part_comparison", "target_chords"}) {
+    add_ids_in(source_folder() / "postproc/proof" / (std::string(file) + ".cpp"), ids);
+  }
   return ids;
 }
 
