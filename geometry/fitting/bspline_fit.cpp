@@ -734,7 +734,9 @@ class SplineCutter {
                    const Pin& to, std::size_t& next, std::vector<Item>& taken) {
     const auto at = [&] { return std::invoke(parameter_of, list[next]); };
     while (next < list.size() && at() <= from.parameter) ++next;
-    while (next < list.size() && at() < to.parameter) taken.push_back(list[next++]);
+    const auto first = list.begin() + static_cast<std::ptrdiff_t>(next);
+    while (next < list.size() && at() < to.parameter) ++next;
+    taken.insert(taken.end(), first, list.begin() + static_cast<std::ptrdiff_t>(next));
   }
 
   const FitProblem& whole_;

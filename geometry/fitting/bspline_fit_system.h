@@ -171,9 +171,17 @@ struct FitSpline {
 // The row at u, on the last span from `span` on that does not start after it; `span` moves there.
 [[nodiscard]] FitRow row_at(const FitSpline& spline, double u, std::size_t& span);
 
-// The normal equations. Memory is kept from one solution to the next.
+// The normal equations. Memory is kept from one solution to the next, but not by copies, of which
+// none is asked for what the other has solved.
 class FitSystem {
  public:
+  FitSystem() = default;
+  FitSystem(const FitSystem& /*other*/) {}
+  FitSystem(FitSystem&&) = default;
+  FitSystem& operator=(const FitSystem& /*other*/) { return *this = FitSystem(); }
+  FitSystem& operator=(FitSystem&&) = default;
+  ~FitSystem() = default;
+
   // Minimises energy + sum of weight * |curve - target|^2 over the control points `free`.
   // `samples` are those whose rows touch them. Returns false when the system is singular.
   [[nodiscard]] bool solve(const FitSpline& spline, std::span<const SampleState> states,

@@ -48,7 +48,7 @@ std::optional<Candidate> make_candidate(const RunTask& task, const RunTimes& tim
   figures.bytes = static_cast<double>(text->text.size());
   figures.roughness = roughness_of(moves);
   candidate.text = std::move(*text);
-  if (context.is_piece() || task.memo != nullptr) candidate.moves = std::move(moves);
+  if (context.is_piece() || task.memo != nullptr) candidate.moves = PackedMoves(moves);
   return candidate;
 }
 

@@ -519,7 +519,8 @@ Times times_with(const CutRun& cut, std::span<const RunState> pieces, const Mach
   ChainTimes times(machine, cut.path);
   for (const RunState& piece : pieces) {
     const Candidate* chosen = piece.chosen();
-    times.add(chosen != nullptr ? chosen->moves : timed_pieces(cut.run, piece.first, piece.last));
+    times.add(chosen != nullptr ? chosen->moves.unpacked()
+                                : timed_pieces(cut.run, piece.first, piece.last));
   }
   return times.finish();
 }
@@ -645,7 +646,7 @@ void RunState::drop_all_but(std::size_t best) {
     candidate.plan.reset();
     if (std::ranges::find(selection.order, i) != selection.order.end()) continue;
     release(candidate.text.text);
-    release(candidate.moves);
+    candidate.moves = PackedMoves();
   }
   if (!cut_run) return;
   release(context.lead);

@@ -28,7 +28,7 @@ class ProblemMaker {
 
   FitProblem make() {
     find_reaches();
-    problem_.samples.reserve(n_ + n_ / 4);
+    problem_.samples.reserve(2 * n_);  // what is not used takes no memory
     problem_.breakpoints.reserve(n_);
     for (std::size_t i = 0; i < n_; ++i) {
       add_vertex(i);

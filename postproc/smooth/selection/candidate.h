@@ -15,6 +15,7 @@
 #include "gcode/writer/block_numbers.h"
 #include "postproc/machine/machine.h"
 #include "postproc/machine/models/cycle_time.h"
+#include "postproc/machine/models/packed_moves.h"
 #include "postproc/options/options.h"
 #include "postproc/runs/section.h"
 #include "postproc/smooth/forms/output_plan.h"
@@ -58,7 +59,7 @@ struct Candidate {
   bool has_run_in_place = false;        // in parts where its form alone would be slower
   bool has_vertices = false;            // the run's own, moved: see plan_vertices
   bool rounds_seam = false;             // see geometry::SmoothCurve
-  std::vector<TimedPiece> moves;        // of a piece of a run, and in a RunMemo; empty otherwise
+  PackedMoves moves;                    // of a piece of a run, and in a RunMemo; empty otherwise
   FormKey key = {};                     // the offer that it was made of
   std::optional<OutputPlan> plan = {};  // where it is asked for (CandidateScope)
 };

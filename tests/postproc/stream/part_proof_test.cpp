@@ -190,7 +190,7 @@ TEST(PartProof, HasTwoCandidatesOfAPieceAtHand) {
       const bool is_kept = std::ranges::count(piece.selection.order, k) > 0;
       EXPECT_EQ(candidate.text.text.empty(), !is_kept);
       EXPECT_TRUE(is_kept || candidate.text.text.capacity() == std::string().capacity());
-      EXPECT_EQ(candidate.moves.capacity() > 0, is_kept);
+      EXPECT_EQ(!candidate.moves.empty(), is_kept);
     }
     if (piece.selection.order.size() == 2 && piece.smoothed.left_out) ++left_out;
   }

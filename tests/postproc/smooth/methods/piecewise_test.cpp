@@ -73,11 +73,12 @@ class Settle : public testing::Test {
         Candidate candidate;
         const geometry::Point3 from = cut_.run.points[i];
         const geometry::Point3 to = cut_.run.points[i + 1];
-        candidate.moves.push_back({geometry::Line{from, to}, 600});
+        std::vector<TimedPiece> moves = {{geometry::Line{from, to}, 600}};
         for (int k = 0; k < there_and_back; ++k) {
-          candidate.moves.push_back({geometry::Line{to, from}, 600});
-          candidate.moves.push_back({geometry::Line{from, to}, 600});
+          moves.push_back({geometry::Line{to, from}, 600});
+          moves.push_back({geometry::Line{from, to}, 600});
         }
+        candidate.moves = PackedMoves(moves);
         candidate.figures.times = {1, 1, 1};  // it looked as good as that, alone
         work.smoothed.candidates.push_back(candidate);
         work.selection.order = {0};
