@@ -356,12 +356,21 @@ class RunSmoother {
     if (options().prefer == Prefer::kAccuracy) return;
     const Selection so_far = choose(result_, options(), Among::kFormsAlone);
     const bool fewer = wants_few_moves(options()) || options().target->curves_in_auto;
-    if (so_far.reason == gcode::reason::kLarger && !fewer) return;
+    if (so_far.reason == gcode::reason::kLarger && !(fewer && may_lead())) return;
     const bool in_corners = corner_part() >= kBounds.corners;
     const bool simpler = may_be_simpler(so_far, fewer);
     if (!simpler && !may_be_faster(in_corners)) return;
     const bool for_time = !simpler && in_corners;
     try_curve(CurveRole::kRounding, Method::kFair, curve_request(Method::kFair), for_time);
+  }
+
+  // Whether a form so far costs less than the blocks as they are, whatever speaks against it.
+  [[nodiscard]] bool may_lead() const {
+    const CostScale& scale = result_.facts.scale;
+    const double before = cost_of(scale.original, scale, options().prefer);
+    return std::ranges::any_of(result_.candidates, [&](const Candidate& c) {
+      return cost_of(c.figures, scale, options().prefer) < before;
+    });
   }
 
   // By rounding corners. Not in runs of corners on a control that blends them itself, where the

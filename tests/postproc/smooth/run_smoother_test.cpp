@@ -169,6 +169,26 @@ TEST(SmoothRun, TriesNoOtherCurveWhereAllFormsAreLarger) {
   EXPECT_GT(curves_of(), 1u);
 }
 
+// Nor where the control is told curves, and each form costs more than the blocks as they are.
+TEST(SmoothRun, TriesNoSimplerCurveWhereAllFormsAreLargerAndCostMore) {
+  const SmoothOptions options = options_for("siemens");
+  ASSERT_TRUE(options.target->curves_in_auto);
+  const OneRun run(
+      "G21 G17 G90\nG0 X0 Y0 Z0\nG1 F1800\n"
+      "G2 X1.168 Y-0.133 I0.023 J-5.000\nG2 X2.893 Y-0.639 I-1.375 J-7.881\n"
+      "G2 X4.100 Y-1.523 I-1.113 J-2.786\nG2 X6.127 Y-5.227 I-5.756 J-5.556\nG0 Z5\nM30\n");
+  const SmoothedRun smoothed = run.smooth(options);
+  EXPECT_FALSE(smoothed.candidates.empty());
+  EXPECT_EQ(choose(smoothed, options, Among::kFormsAlone).reason, gcode::reason::kLarger);
+  EXPECT_TRUE(std::ranges::all_of(smoothed.candidates, [&](const Candidate& c) {
+    const CostScale& scale = smoothed.facts.scale;
+    return cost_of(c.figures, scale, options.prefer) >=
+           cost_of(scale.original, scale, options.prefer);
+  }));
+  EXPECT_TRUE(std::ranges::none_of(
+      smoothed.tried, [](const TriedForm& form) { return form.key.role == CurveRole::kRounding; }));
+}
+
 // A zigzag of chords of 4 mm, each turned by 40 degrees: all of its vertices are corners.
 std::string zigzag_of_corners(int feed) {
   std::string text = head("G21") + fmt::format("F{}\n", feed);
