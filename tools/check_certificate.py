@@ -539,6 +539,7 @@ class Reader:
             return [("unknown", None, None)] if motion is None else []
         start, end = state.place, self.end_of(state, axes)
         if motion == "POLY":
+            refuse_if(offsets or others.keys() & {"R", "CR", "P", "Q"}, "words of another curve beside a polynomial")
             return self.polynomial_of(state, start, axes, polynomials)
         state.place = end
         if motion is None:
@@ -600,6 +601,7 @@ class Reader:
     def g5(self, state, p, q, axes, offsets, others):
         if state.plane != 17 or "Z" in axes or offsets.keys() != {"I", "J"} or not {"P", "Q"} <= others.keys():
             raise Refused("a G5 that is not written whole, or not in XY")
+        refuse_if(others.keys() & {"R", "CR"}, "a radius beside a G5")
         shift = lambda text: self.length(text, state)
         b1 = [p[0] + shift(offsets["I"]), p[1] + shift(offsets["J"]), p[2]]
         b2 = [q[0] + shift(others["P"]), q[1] + shift(others["Q"]), p[2]]
