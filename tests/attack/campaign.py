@@ -64,6 +64,14 @@ def line_limits(batten):
     return {row[0]: int(row[3]) for row in rows}
 
 
+def held_of(target, line):
+    """What the control holds of a line: grbl drops comments and blanks before they come to its buffer, and
+    RepRapFirmware comments."""
+    if target in ("grbl", "reprapfirmware"):
+        line = re.sub(r"\([^)]*\)|;.*", "", line)
+    return "".join(line.split()) if target == "grbl" else line
+
+
 class Tries:
     """Programs of one task, and what came of them."""
 
@@ -147,8 +155,9 @@ class Tries:
 
     def too_long(self, target, old, new):
         known = set(old.split("\n"))
-        long = [line for line in new.split("\n") if len(line) > self.limits[target] and line not in known]
-        return f"a line of {len(long[0])} characters" if long else ""
+        long = [line for line in new.split("\n")
+                if len(held_of(target, line)) > self.limits[target] and line not in known]
+        return f"a line of {len(held_of(target, long[0]))} characters" if long else ""
 
     def checked(self, target, tolerance):
         said = io.StringIO()

@@ -15,6 +15,7 @@ import tempfile
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parents[1] / "tools")]
+import campaign  # noqa: E402
 import check_certificate  # noqa: E402
 import oracle  # noqa: E402
 import paths  # noqa: E402
@@ -275,6 +276,14 @@ def check_found():
     return wrong
 
 
+def check_held():
+    """Of a line that is as long as it may be, what the control drops does not count."""
+    line = "G1 X1 (a (b) c" + "X" * 20
+    held = {"grbl": "G1X1c" + "X" * 20, "reprapfirmware": "G1 X1  c" + "X" * 20, "linuxcnc": line}
+    return [f"{target} holds {campaign.held_of(target, line)}" for target, what in held.items()
+            if campaign.held_of(target, line) != what]
+
+
 def check_together():
     """The distance that is decided on is that of the closed form."""
     wrong = []
@@ -316,7 +325,7 @@ def check_weights():
 
 
 def main():
-    wrong = check_together() + check_weights() + check_found()
+    wrong = check_together() + check_weights() + check_found() + check_held()
     for control, text, changes in CASES:
         old = oracle.OldProgram(text, control)
         canon = oracle.Canon(text) if control in oracle.LIKE_LINUXCNC and oracle.rs274_is_there() else None
