@@ -99,17 +99,15 @@ std::string summary_of(const Verification& verification, const VerifyCommand& co
           : "";
   return fmt::format(
              "proved: {} keeps {:g} mm to {}, {}\n"
-             "  greatest deviation {:.4f} mm{}{}; {} changed sections{}, {} acting words and "
-             "blocks "
-             "the same\n",
+             "  greatest deviation {:.4f} mm{}{}; {}{}, {} acting words and blocks the same\n",
              command.new_program, command.tolerance_mm, command.old_program,
              band ? "in order, in the band reading" : "both ways and in order",
              verification.deviation_mm,
              verification.deviation_line > 0
                  ? fmt::format(" near line {}", verification.deviation_line)
                  : "",
-             corners, verification.sections.size(), closer_sections_text(verification, command),
-             verification.events_compared) +
+             corners, plural(verification.sections.size(), "changed section"),
+             closer_sections_text(verification, command), verification.events_compared) +
          second_check_text(verification, command);
 }
 
