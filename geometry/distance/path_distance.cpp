@@ -224,7 +224,7 @@ bool within_tolerance(const Matching& matching, const ChordPolyline& a, const Ch
 // Chord error of either path, as a share of the tolerance. When the answer is within these errors
 // of the tolerance, chords of a fourth of the length (a sixteenth of the error) are asked next;
 // after the last one the answer is left open.
-constexpr double kChordShares[] = {5e-3, 5e-3 / 16, 5e-3 / 256};
+constexpr double kChordShares[] = {kFirstChordShare, kFirstChordShare / 16, kFirstChordShare / 256};
 
 // at_most may be this share of the tolerance above the truth, and twice the chord errors: with arcs
 // on one side that makes the two percent that compare_paths promises.

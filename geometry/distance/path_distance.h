@@ -47,6 +47,9 @@ struct PathComparison {
   std::size_t certificate_size = 0;  // pairs that prove the bound
 };
 
+// Of the tolerance: the error of the chords into which arcs and curves are cut at first.
+inline constexpr double kFirstChordShare = 5e-3;
+
 // `tolerance`: mm, > 0; throws std::invalid_argument otherwise. Two empty paths are proved at
 // distance 0; an empty path is one that waits where the other one starts. `at_most` is tight to
 // within about 2 % of the tolerance where the paths are proved, and never above the tolerance then;

@@ -13,6 +13,7 @@
 #include "geometry/band/tolerance_band.h"
 #include "geometry/distance/chord_polyline.h"
 #include "geometry/distance/joints.h"
+#include "geometry/distance/path_distance.h"
 #include "geometry/path/path.h"
 #include "postproc/proof/target_chords.h"
 
@@ -34,14 +35,15 @@ double read_within(const PathPart& part) {
 // Paths of more chords, when arcs and curves are cut into them to be compared, are compared part by
 // part, which takes less memory. Each part is so long that what its ends cost is little.
 constexpr double kChordsAtOnce = 1024;
-constexpr double kCutWithin = 0.005;  // of the tolerance
 constexpr std::size_t kPiecesOfPart = 256;
 
 double count_chords(const PathPart& part, double tolerance) {
   double count = 0;
   for (std::size_t i = 0; i < part.size(); ++i) {
     const gcode::MotionPath& piece = part.piece(i);
-    count += piece.is_line() ? 1 : geometry::chords_wanted(piece, kCutWithin * tolerance);
+    count += piece.is_line()
+                 ? 1
+                 : geometry::chords_wanted(piece, geometry::kFirstChordShare * tolerance);
   }
   return count;
 }

@@ -356,7 +356,7 @@ class RunSmoother {
     if (options().prefer == Prefer::kAccuracy) return;
     const Selection so_far = choose(result_, options(), Among::kFormsAlone);
     const bool fewer = wants_few_moves(options()) || options().target->curves_in_auto;
-    if (so_far.reason == gcode::reason::kLarger && !(fewer && may_lead())) return;
+    if (so_far.reason == gcode::reason::kLarger && !(fewer && any_costs_less())) return;
     const bool in_corners = corner_part() >= kBounds.corners;
     const bool simpler = may_be_simpler(so_far, fewer);
     if (!simpler && !may_be_faster(in_corners)) return;
@@ -365,7 +365,7 @@ class RunSmoother {
   }
 
   // Whether a form so far costs less than the blocks as they are, whatever speaks against it.
-  [[nodiscard]] bool may_lead() const {
+  [[nodiscard]] bool any_costs_less() const {
     const CostScale& scale = result_.facts.scale;
     const double before = cost_of(scale.original, scale, options().prefer);
     return std::ranges::any_of(result_.candidates, [&](const Candidate& c) {

@@ -137,6 +137,38 @@ std::size_t memory_of(const BattenFolder& folder, const std::string& command) {
   return std::stoul(expect_exit(folder.shell(kMeasured + command), 0).out);
 }
 
+// A helix of arcs of 20 degrees, some hundred chords each when they are compared. `moved`: each but
+// every tenth ends half a degree earlier.
+std::string helix(int arcs, bool moved) {
+  constexpr double kDegree = 3.14159265358979 / 180;
+  std::string text = "G21 G17 G90 G94\nG0 X50 Y0 Z0\nG1 F1000\n";
+  std::pair<double, double> from(50, 0);
+  for (int i = 1; i <= arcs; ++i) {
+    const double angle = 20 * i - (moved && i % 10 != 0 ? 0.5 : 0);
+    const double x = 50 * std::cos(angle * kDegree);
+    const double y = 50 * std::sin(angle * kDegree);
+    text += fmt::format("G3 X{:.4f} Y{:.4f} Z{:.4f} I{:.4f} J{:.4f}\n", x, y, 0.01 * angle,
+                        -from.first, -from.second);
+    from = {std::round(x * 1e4) / 1e4, std::round(y * 1e4) / 1e4};
+  }
+  return text + "G0 Z999\nM2\n";
+}
+
+// Between positions that both paths pass arcs are compared by themselves: the chords of all of them
+// would take 19 kB for each.
+TEST(MemoryOfLongPrograms, IsNotThatOfTheChordsOfTheirArcs) {
+  constexpr std::size_t kMost = 4000;  // for each arc
+  const BattenFolder folder;
+  std::size_t memory[2] = {};
+  for (const int k : {0, 1}) {
+    const int arcs = k == 0 ? 1000 : 3000;
+    folder.put("old.nc", helix(arcs, false));
+    folder.put("new.nc", helix(arcs, true));
+    memory[k] = memory_of(folder, "verify old.nc new.nc --tolerance 0.01");
+  }
+  EXPECT_LE(memory[1], memory[0] + 2000 * kMost);
+}
+
 // Rows of two hundred blocks, and half as many more: no more memory than some bytes of each block,
 // for the report of its run. Of fewer rows how a heap lies is more than that. Held as a whole a
 // block takes some hundred.
