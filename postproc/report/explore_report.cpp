@@ -77,6 +77,16 @@ std::vector<std::string> command_of(const ExploreReport& report) {
   return words;
 }
 
+// What is said where some runs stand for all.
+std::string sampled_runs(const Exploration& found) {
+  const auto is_sampled = [](const ExploredRow& row) { return row.runs_looked_at < row.runs; };
+  const auto row = std::ranges::find_if(found.rows, is_sampled);
+  if (row == found.rows.end()) return {};
+  return fmt::format(
+      "  estimated from {} of {} runs, but for what is recommended, which is from all\n",
+      row->runs_looked_at, row->runs);
+}
+
 // What is said of the target's curves where all forms but them were explored.
 std::string untried_curves(const Exploration& found) {
   const auto has = [&](Form form) {
@@ -108,6 +118,8 @@ Json json_of(const ExploredRow& row) {
           {"prefer", name_of(row.options.prefer)},
           {"dominated", row.dominated},
           {"proved", row.proved},
+          {"runs", row.runs},
+          {"runs_looked_at", row.runs_looked_at},
           {"before", json_of(row.before)},
           {"after", json_of(row.after)}};
 }
@@ -132,7 +144,7 @@ std::string explore_text(const ExploreReport& report) {
     last = &row;
   }
   text += "  * no other setting is as good in all four figures and better in one\n" +
-          untried_curves(found);
+          sampled_runs(found) + untried_curves(found);
   if (found.recommended) {
     const ExploredRow& row = found.rows[*found.recommended];
     text += fmt::format("\n  {:<26}", "feed");

@@ -382,6 +382,9 @@ void add_outlook(const SmoothReport& report, std::string& lines) {
   if (!(length > 0) || (now.head(2) <= clearly.head(2) * before.head(2)).any()) return;
   std::string said;
   for (int row = 0; row < outlook.others.rows(); ++row) {
+    const SmoothOptions options = other_options(report.options, row);
+    const bool form = options.output != report.options.output;
+    if (!form && options.prefer == report.options.prefer) continue;  // what was written
     Eigen::Array3d other = outlook.others.row(row).transpose();
     other[2] = std::sqrt(std::max(0.0, before[2] * before[2] + other[2] / length));
     other.head(2) += before.head(2);
@@ -389,8 +392,6 @@ void add_outlook(const SmoothReport& report, std::string& lines) {
     if (slower || !(other <= clearly * now).any()) continue;
     std::string changes = changes_text({now.data(), 3}, {other.data(), 3});
     if (changes == said) continue;
-    const SmoothOptions options = other_options(report.options, row);
-    const bool form = options.output != report.options.output;
     lines += titled("found",
                     fmt::format("--{} {}{}", form ? "output" : "prefer",
                                 form ? name_of(options.output) : name_of(options.prefer), changes));

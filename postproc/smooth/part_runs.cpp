@@ -209,10 +209,10 @@ class PartSmoother {
     return !stopped;
   }
 
-  // Of `works` those that `shapes` lists: all in full where a method or all settings are asked for.
+  // Of `works` those that `shapes` lists: all in full where a method is asked for.
   [[nodiscard]] std::vector<LikeRuns> kinds_of(const std::vector<std::size_t>& works,
                                                const std::vector<std::size_t>& shapes) const {
-    const bool named = options_.method != Method::kBest || memos_ != nullptr;
+    const bool named = options_.method != Method::kBest;
     if (named || !options_.share_work) return {{.in_full = shapes}};
     return like_runs(shapes, [&](std::size_t i) {
       const Run& run = run_of(runs_.works[works[i]]);

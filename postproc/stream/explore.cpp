@@ -1,15 +1,21 @@
 #include "postproc/stream/explore.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <iterator>
 #include <map>
 #include <mutex>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "postproc/runs/run_path.h"
 #include "postproc/smooth/part_runs.h"
+#include "postproc/smooth/selection/candidate_bounds.h"
 #include "postproc/smooth/selection/cost.h"
 #include "postproc/stream/pipeline.h"
+#include "postproc/stream/run_sample.h"
 
 namespace batten::postproc {
 
@@ -17,12 +23,56 @@ namespace {
 
 // Of the cost, what a larger tolerance has to win: as half a percent of the time does.
 constexpr double kWorthMore = 0.005;
+// Settings that are proved where the others are estimated: the best of them is recommended.
+constexpr std::size_t kProved = 2;
 
 void add_to(ExploredFigures& sum, const ExploredFigures& part) {
   sum.time_s += part.time_s;
   sum.blocks += part.blocks;
   sum.path += part.path;
   sum.rewritten = sum.rewritten || part.rewritten;
+}
+
+// The runs of a part that are looked at.
+struct PartSample {
+  PartRuns runs;                               // the others are copied
+  std::map<std::uint32_t, double> stands_for;  // by first line
+};
+
+PartSample sample_of_part(const ProgramPart& part, PartRuns runs, double tolerance_mm) {
+  const auto run_of = [&](const RunState& work) -> const Run& {
+    return std::get<Run>(runs.sections[work.section].content);
+  };
+  // Runs of corners behind the others: both have their share.
+  std::vector<std::size_t> order;
+  for (const bool of_corners : {false, true}) {
+    for (std::size_t i = 0; i < runs.works.size(); ++i) {
+      const Run& run = run_of(runs.works[i]);
+      const double coarse = coarse_part(run, tolerance_of(run, tolerance_mm));
+      if ((coarse >= kBounds.corners) == of_corners) order.push_back(i);
+    }
+  }
+  std::vector<std::size_t> moves;
+  for (const std::size_t work : order) moves.push_back(motion_count(run_of(runs.works[work])));
+  PartSample sample;
+  std::vector<bool> is_taken(runs.works.size());
+  for (const SampledRun& taken : sample_of(moves)) {
+    const RunState& work = runs.works[order[taken.run]];
+    is_taken[order[taken.run]] = true;
+    const std::uint32_t first_block = runs.sections[work.section].first_block;
+    sample.stands_for[part.program.blocks[first_block].line] = taken.stands_for;
+  }
+  std::vector<RunState> works;
+  for (std::size_t i = 0; i < runs.works.size(); ++i) {
+    if (is_taken[i]) {
+      works.push_back(std::move(runs.works[i]));
+    } else {
+      runs.sections[runs.works[i].section].content = Verbatim{};
+    }
+  }
+  runs.works = std::move(works);
+  sample.runs = std::move(runs);
+  return sample;
 }
 
 // The settings of one tolerance, looked at part by part.
@@ -41,6 +91,7 @@ class ToleranceSurvey {
     const ProgramSink sink = {[](std::string_view) { return true; },
                               [this] {
                                 parts_.clear();
+                                runs_ = looked_at_ = 0;
                                 return true;
                               }};
     SmoothResult read =
@@ -49,6 +100,8 @@ class ToleranceSurvey {
                               const ProgressCallback& tell) { return look_at(part, runs, tell); });
     for (std::size_t i = 0; read.understood && i < settings_.size(); ++i) {
       ExploredRow row{settings_[i], {}, {}};
+      row.runs = runs_;
+      row.runs_looked_at = looked_at_;
       row.options.quick = false;
       for (const auto& [line, figures] : parts_) {
         add_to(row.before, figures[i].first);
@@ -56,7 +109,7 @@ class ToleranceSurvey {
       }
       const double elsewhere = read.program_before.seconds - row.before.time_s;
       for (ExploredFigures* figures : {&row.before, &row.after}) {
-        figures->blocks += static_cast<double>(read.blocks_in);
+        figures->blocks = std::round(figures->blocks) + static_cast<double>(read.blocks_in);
         figures->time_s += elsewhere;
       }
       rows.push_back(std::move(row));
@@ -67,31 +120,41 @@ class ToleranceSurvey {
  private:
   bool look_at(const ProgramPart& part, const PartRuns& runs, const ProgressCallback& tell) {
     if (runs.works.empty()) return true;
+    const PartSample sample = sample_of_part(part, runs, settings_.front().tolerance_mm);
     RunMemos memos;
     std::vector<std::pair<ExploredFigures, ExploredFigures>> all;
     for (const SmoothOptions& options : settings_) {
-      PartRuns own = runs;
+      PartRuns own = sample.runs;
       const auto done = static_cast<double>(all.size());
       const auto tell_share = [&](double share) {
         return tell((done + share) / static_cast<double>(settings_.size()));
       };
       if (!smooth_runs(part, options, tell_share, own, &memos)) return false;
       auto& [before, after] = all.emplace_back();
-      for (const RunReport& run : report_runs(part, own, options.tolerance_mm, {}, false)) {
+      for (RunReport& run : report_runs(part, own, options.tolerance_mm, {}, false)) {
+        const auto at = sample.stands_for.upper_bound(run.first_line);
+        if (at == sample.stands_for.begin()) continue;  // lines that are copied
+        const double times = std::prev(at)->second;
         const double more =
             static_cast<double>(run.blocks_out) - static_cast<double>(run.blocks_in);
-        add_to(before, {run.time_before_s, 0, run.path_before});
-        add_to(after,
-               {run.time_after_s, more, run.path_after, run.status == RunStatus::kRewritten});
+        run.path_before.length_mm *= times;
+        run.path_after.length_mm *= times;
+        add_to(before, {times * run.time_before_s, 0, run.path_before});
+        add_to(after, {times * run.time_after_s, times * more, run.path_after,
+                       run.status == RunStatus::kRewritten});
       }
     }
     const std::scoped_lock lock(adding_);
+    runs_ += runs.works.size();
+    looked_at_ += sample.runs.works.size();
     parts_.insert_or_assign(part.program.blocks.front().line, std::move(all));
     return true;
   }
 
   std::vector<SmoothOptions> settings_;
   std::mutex adding_;
+  std::size_t runs_ = 0;
+  std::size_t looked_at_ = 0;
   // By first line, for each setting: before and after. Of blocks what they are more.
   std::map<std::uint32_t, std::vector<std::pair<ExploredFigures, ExploredFigures>>> parts_;
 };
@@ -100,6 +163,7 @@ class ToleranceSurvey {
 void set_proved(const SmoothResult& result, ExploredRow& row) {
   row.proved = true;
   row.before.at_feeds = result.program_before.at_feeds;
+  row.before.path = result.path_before;
   if (!result.proved) {
     row.after = row.before;
     return;
@@ -127,7 +191,7 @@ void mark_dominated(std::vector<ExploredRow>& rows) {
   }
 }
 
-std::optional<std::size_t> recommended_row(const std::vector<ExploredRow>& rows) {
+std::optional<std::size_t> recommended_row(const std::vector<ExploredRow>& rows, bool proved) {
   if (rows.empty()) return std::nullopt;
   const Prefer first = rows.front().options.prefer;
   const Prefer prefer = first == rows.back().options.prefer ? first : Prefer::kTime;
@@ -136,7 +200,7 @@ std::optional<std::size_t> recommended_row(const std::vector<ExploredRow>& rows)
   for (std::size_t i = 0; i < rows.size(); ++i) {
     CostScale scale{as_figures(rows[i].before), rows[i].before.time_s};
     scale.near = kCost.near * rows[i].options.tolerance_mm;
-    if (!rows[i].after.rewritten) continue;
+    if (!rows[i].after.rewritten || (proved && !rows[i].proved)) continue;
     const Figures after = as_figures(rows[i].after);
     if (objection_to(after, scale, prefer) != Objection::kNone) continue;
     const double cost = cost_of(after, scale, prefer);
@@ -168,8 +232,13 @@ Exploration explore_program(const gcode::SourceText& source,
     rest = rest.subspan(count);
   }
   const ProgramSink nowhere = {[](std::string_view) { return true; }, [] { return true; }};
-  for (auto best = recommended_row(found.rows); best; best = recommended_row(found.rows)) {
-    ExploredRow& row = found.rows[*best];
+  std::vector<ExploredRow>& rows = found.rows;
+  const bool estimated = std::ranges::any_of(
+      rows, [](const ExploredRow& row) { return row.runs_looked_at < row.runs; });
+  std::size_t good = 0;  // proved, and nothing speaks against them
+  for (auto best = recommended_row(rows); best;
+       best = recommended_row(rows, estimated && good >= kProved)) {
+    ExploredRow& row = rows[*best];
     if (row.proved) {
       found.recommended = best;
       break;
@@ -179,6 +248,7 @@ Exploration explore_program(const gcode::SourceText& source,
     SmoothResult result = smooth_program(source, options, nowhere, share_of_all);
     if (!result.understood) return {std::move(result), {}, {}};
     set_proved(result, row);
+    if (recommended_row({row})) ++good;
   }
   mark_dominated(found.rows);
   return found;

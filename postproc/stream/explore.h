@@ -30,8 +30,10 @@ struct ExploredRow {
   SmoothOptions options;
   ExploredFigures before;
   ExploredFigures after;
-  bool dominated = false;  // another one is no worse in all four figures, and better in one
-  bool proved = false;     // the figures are those of the proved text that `smooth` writes
+  bool dominated = false;          // another one is no worse in all four figures, and better in one
+  bool proved = false;             // the figures are those of the proved text that `smooth` writes
+  std::size_t runs = 0;            // that may be rewritten
+  std::size_t runs_looked_at = 0;  // where they are fewer, these stand for all of them
 };
 
 struct Exploration {
@@ -46,6 +48,10 @@ struct Exploration {
 // what is shown for output auto and the other preferences is what it chooses. Nothing is written,
 // and nothing proved but the recommended setting, which is smoothed as `smooth` does.
 //
+// Of many runs some stand for all (postproc/stream/run_sample.h): then the figures of settings that
+// are not proved are estimates, and the first proved one that nothing speaks against is
+// recommended.
+//
 // Deterministic for any number of threads. A long program is explored window by window.
 [[nodiscard]] Exploration explore_program(const gcode::SourceText& source,
                                           const std::vector<SmoothOptions>& settings,
@@ -55,7 +61,8 @@ void mark_dominated(std::vector<ExploredRow>& rows);
 
 // Of the rows that nothing speaks against, the one of the least cost, as between forms of a run
 // (postproc/smooth/selection/cost.h); a larger tolerance has to win half a percent more. By time,
-// unless all rows have another preference.
-[[nodiscard]] std::optional<std::size_t> recommended_row(const std::vector<ExploredRow>& rows);
+// unless all rows have another preference. `proved`: of those alone.
+[[nodiscard]] std::optional<std::size_t> recommended_row(const std::vector<ExploredRow>& rows,
+                                                         bool proved = false);
 
 }  // namespace batten::postproc

@@ -137,6 +137,15 @@ const SummaryCase kSummaries[] = {
      },
      {"--output arcs: 50 % fewer blocks, 100 % farther from the path"},
      {"--prefer", "the program is good"}},
+    {"OutlookOnWhatWasWritten",
+     [](SmoothResult& result) {
+       find_nothing(result);
+       for (const int auto_or_time : {0, 4}) {
+         result.outlook.others.row(auto_or_time) << 0, -100, 0;
+       }
+     },
+     {},
+     {"--prefer", "--output", "the program is good"}},
     {"OutlookAtItsFeeds",
      [](SmoothResult& result) {
        find_nothing(result);
@@ -207,13 +216,14 @@ TEST_F(SmoothReports, HaveTheirFieldsInAFixedOrder) {
       "slow_share_after path_before path_after proved understood diagnostics ");
   EXPECT_EQ(keys_of(report["input"]), "file bytes blocks units ");
   EXPECT_EQ(keys_of(report["output"]), "file bytes blocks target ");
-  EXPECT_EQ(keys_of(report["runs"][0]),
-            "first_line last_line points tolerance_mm status reason method methods form blocks_in "
-            "computed_blocks "
-            "blocks_out "
-            "deviation_mm proved cut_short noise_mm coarse_part max_curvature_before max_curvature_after "
-            "bytes_in bytes_out "
-            "path_before path_after time_before_s time_after_s ");
+  EXPECT_EQ(
+      keys_of(report["runs"][0]),
+      "first_line last_line points tolerance_mm status reason method methods form blocks_in "
+      "computed_blocks "
+      "blocks_out "
+      "deviation_mm proved cut_short noise_mm coarse_part max_curvature_before max_curvature_after "
+      "bytes_in bytes_out "
+      "path_before path_after time_before_s time_after_s ");
 }
 
 TEST_F(SmoothReports, SayTheFiguresOfTheResultToPrograms) {

@@ -129,23 +129,27 @@ TEST_P(LikeRuns, HaveOneFormForEachKey) {
   }
 }
 
-// All settings that explore compares, and methods that are asked for by name.
-TEST(AllLikeRuns, AreMadeInFullWhereTheirFormsAreAskedFor) {
+// Of methods that are asked for by name.
+TEST(AllLikeRuns, AreMadeInFullWhereAMethodIsAskedFor) {
   SmoothOptions options = options_for("linuxcnc");
+  const ProgramPart part = waves_side_by_side();
+  for (const auto& [method, shares] :
+       {std::pair(Method::kBest, false), std::pair(Method::kFair, true)}) {
+    options.method = method;
+    options.share_work = shares;
+    const PartRuns runs = smoothed_waves(part, options);
+    EXPECT_EQ(totals_of(runs, options).tried, totals_in_full(runs, options).tried);
+  }
+}
+
+TEST(AllLikeRuns, AreExploredInTheFormsInWhichTheyAreSmoothed) {
+  const SmoothOptions options = options_for("linuxcnc");
   const ProgramPart part = waves_side_by_side();
   RunMemos memos;
   const LikeTotals explored = totals_of(smoothed_waves(part, options, &memos), options);
-  const auto expect_all = [&] {
-    const PartRuns runs = smoothed_waves(part, options);
-    EXPECT_EQ(totals_of(runs, options).tried, totals_in_full(runs, options).tried);
-  };
-  options.share_work = false;
-  expect_all();
-  RunMemos other_memos;
-  EXPECT_EQ(totals_of(smoothed_waves(part, options, &other_memos), options).tried, explored.tried);
-  options.share_work = true;
-  options.method = Method::kFair;
-  expect_all();
+  const LikeTotals smoothed = totals_of(smoothed_waves(part, options), options);
+  EXPECT_EQ(explored.tried, smoothed.tried);
+  EXPECT_EQ(explored.cost, smoothed.cost);
 }
 
 }  // namespace

@@ -1,7 +1,10 @@
 // What `explore_program` shows is what `smooth` gives, and what it recommends is no worse.
 #include "postproc/stream/explore.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+
+#include <cmath>
 
 #include "postproc/stream/pipeline.h"
 #include "tests/support/interpreted.h"
@@ -110,6 +113,38 @@ TEST(Explore, TellsForAFasterFeedWhatTheRecommendedTextTakesWithIt) {
   };
   EXPECT_NEAR(row.before.at_feeds[3], seconds_of(std::string(source.text())), 1e-9);
   EXPECT_NEAR(row.after.at_feeds[3], seconds_of(smooth_program(source, row.options).text), 1e-9);
+}
+
+// Rows of a surface, each a little higher: every third of them tells what all of them give.
+TEST(Explore, OfManyRunsSomeStandForAll) {
+  constexpr int kRows = 96;
+  std::string text = head("G21");
+  for (int row = 0; row < kRows; ++row) {
+    text += fmt::format("G0 X0 Y{:.3f}\nG1 Z-1 F300\nG4 P0.1\n", 10.0 * row);
+    for (int i = 1; i <= 60; ++i) {
+      text += fmt::format("G1 X{:.4f} Y{:.4f} F2000\n", 0.3 * i,
+                          10.0 * row + (2 + 0.02 * row) * std::sin(0.2 * i));
+    }
+    text += "G0 Z5\n";
+  }
+  const gcode::SourceText source("rows.nc", text + tail());
+  const auto settings = settings_of("linuxcnc", {0.01});
+  const Exploration found = explore_program(source, settings);
+  ASSERT_TRUE(found.recommended);
+  EXPECT_TRUE(found.rows[*found.recommended].proved);
+  for (const ExploredRow& row : found.rows) {
+    EXPECT_EQ(row.runs, 96u);
+    EXPECT_EQ(row.runs_looked_at, 32u);
+    if (row.options.output != Form::kAuto || row.options.prefer == Prefer::kSize) continue;
+    SCOPED_TRACE(name_of(row.options.prefer));
+    const SmoothResult smoothed = smooth_program(source, row.options);
+    EXPECT_NEAR(row.after.time_s, smoothed.program_after.seconds,
+                1e-3 * smoothed.program_after.seconds);
+    EXPECT_NEAR(row.after.blocks, static_cast<double>(smoothed.blocks_out),
+                0.02 * static_cast<double>(smoothed.blocks_in));
+    EXPECT_NEAR(row.after.path.distance_mm, smoothed.path_after.distance_mm,
+                0.1 * smoothed.path_before.distance_mm);
+  }
 }
 
 TEST(Explore, IsTheSameForAnyNumberOfThreads) {
