@@ -293,8 +293,9 @@ class LinkSection {
 
   // Proved links where they are fewer than the chords, otherwise these.
   Vertices links() const {
-    Vertices found = continued({{pieces_.point_at(from_), from_}}, options_.tolerance);
-    if (options_.balanced && found.size() > 2) balance(found);
+    const GateChain gates(pieces_, from_, to_, gap_);
+    Vertices found = continued({{pieces_.point_at(from_), from_}}, gates, options_.tolerance);
+    if (options_.balanced && found.size() > 2) balance(found, gates);
     if (prove(found) && found.size() < chords_.size()) return found;
     Vertices on_curve;
     on_curve.reserve(chords_.size());
@@ -322,10 +323,10 @@ class LinkSection {
     if (height_ <= kLink.flat * options_.tolerance) normal_ = normal;
   }
 
-  // From the last of `start` to the end of the section, with this tolerance.
-  [[nodiscard]] Vertices continued(const Vertices& start, double tolerance) const {
+  // From the last of `start`, at the first gate, to the end of the section, with this tolerance.
+  [[nodiscard]] Vertices continued(const Vertices& start, const GateChain& gates,
+                                   double tolerance) const {
     const LinkVertex& last = start.back();
-    const GateChain gates(pieces_, last.parameter, to_, gap_);
     std::optional<Vertices> more;
     if (normal_) {
       const double width = std::sqrt(tolerance * tolerance - 4 * height_ * height_);
@@ -338,23 +339,51 @@ class LinkSection {
   }
 
   // Narrows the tube over the last links as long as they do not become more.
-  void balance(Vertices& vertices) const {
+  void balance(Vertices& vertices, const GateChain& all) const {
     const std::size_t links = vertices.size() - 1;
     const std::size_t kept = links > kLink.balanced ? links - kLink.balanced : 0;
     const Vertices start(vertices.begin(),
                          vertices.begin() + static_cast<std::ptrdiff_t>(kept) + 1);
+    std::optional<GateChain> rest;
+    if (kept > 0) rest.emplace(pieces_, start.back().parameter, to_, gap_);
+    const GateChain& gates = rest ? *rest : all;
+    const std::vector<double> bent = bent_up_to(gates);
+    const auto needed_part = [&](const Vertices& made) {
+      const std::size_t last = gates.index_of(made[made.size() - 2].parameter);
+      const double of_last = bent.back() - bent[last];
+      const auto others = static_cast<double>(made.size() - 2 - kept);
+      const double remainder = std::min(1.0, of_last * others / bent[last]);
+      const double needed = (others + remainder) / static_cast<double>(links - kept);
+      return needed * needed;
+    };
     double good = 1;
     double bad = kLink.narrowest;
+    double needed = needed_part(vertices);
     for (int round = 0; round < kLink.balancing_rounds; ++round) {
-      const double middle = (good + bad) / 2;
-      Vertices narrower = continued(start, middle * options_.tolerance);
+      const double next = std::clamp(needed, bad, good);
+      const double part = next + kLink.above_needed * (good - next);
+      Vertices narrower = continued(start, gates, part * options_.tolerance);
+      needed = part * needed_part(narrower);
       if (narrower.size() <= vertices.size()) {
         vertices = std::move(narrower);
-        good = middle;
+        good = part;
       } else {
-        bad = middle;
+        bad = part;
       }
     }
+  }
+
+  // For each gate, what links have to follow of the curve up to it: the sum of the roots of its
+  // turns by their lengths. On an even bend a link follows as much of it as it is long, by the root
+  // of the tolerance.
+  static std::vector<double> bent_up_to(const GateChain& gates) {
+    std::vector<double> bent = {0};
+    for (std::size_t i = 1; i < gates.size(); ++i) {
+      const double turn = (gates[i].along - gates[i - 1].along).norm();
+      const double length = (gates[i].center - gates[i - 1].center).norm();
+      bent.push_back(bent.back() + std::sqrt(turn * length));
+    }
+    return bent;
   }
 
   // Proves each link; cuts those that are not proved, with new vertices on the curve.

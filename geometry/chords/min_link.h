@@ -39,8 +39,11 @@ struct MinLinkTuning {
   // Balancing: halvings in search of the least tolerance that needs as many links, above this part
   // of it (9/16 needs a third more links), over the last links only: the cost does not grow with
   // the run.
-  int balancing_rounds = 4;
+  int balancing_rounds = 2;
   double narrowest = 9.0 / 16;
+  // Above the tolerance with which the last link is expected to be as long as the others, as a part
+  // of what it is below the whole: where a balanced polyline is looked for first.
+  double above_needed = 0.05;
   std::size_t balanced = 40;
   // In space. Corners of the polygon in a gate's circle: between two of them it is 2 % narrower; to
   // where the curve bends, where the width is needed, it is not.

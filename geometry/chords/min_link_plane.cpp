@@ -43,6 +43,7 @@ struct PlaneGate {
   Point2 center;
   Vector2 normal;  // unit length, to the left of the way
   Offsets open;
+  int side = 0;  // to which the curve bends: +1 left, -1 right; 0: straight
 
   [[nodiscard]] Point2 at(double offset) const { return center + offset * normal; }
 };
@@ -250,16 +251,31 @@ class GateSweep {
     const double bend = plane.normal.dot(axes_ * gate.bend);
     const double inside = width_ - gate.gap;
     plane.open = {bend < 0 ? -inside : -width_, bend > 0 ? inside : width_};
+    plane.side = bend == 0 ? 0 : (bend < 0 ? -1 : 1);
     return plane;
+  }
+
+  // Whether the curve bends to one side only from gate `first` to gate `last`.
+  [[nodiscard]] bool keeps_side(std::size_t first, std::size_t last) const {
+    int side = 0;
+    for (std::size_t i = first; i <= last; ++i) {
+      if (gates_[i].side * side < 0) return false;
+      if (gates_[i].side != 0) side = gates_[i].side;
+    }
+    return true;
   }
 
   // Calls `see(sight, next gate)` for every part of a gate where a link may start after this layer:
   // on the last gate where it is still in reach. On the gate after that it is not, which leaves few
-  // ways.
+  // ways. It returns the gate that is seen no more: where the curve keeps its side up to there, the
+  // best turn is as far as the layer gets.
   template <typename See>
   void from_each_start(const Layer& layer, const See& see) const {
-    if (layer.end) see(Sight(*layer.end, layer.end_reached), layer.last() + 1);
+    std::size_t unseen = layer.last() + 1;
+    if (layer.end) unseen = see(Sight(*layer.end, layer.end_reached), layer.last() + 1);
     see(Sight(gates_[layer.last()], layer.on(layer.last())), layer.last() + 1);
+    const std::size_t two_links_on = unseen + 2 * (unseen - layer.last());
+    if (layer.end && keeps_side(layer.first, std::min(two_links_on, last_gate()))) return;
     for (std::size_t i = layer.last(); i-- > layer.first;) {
       if (layer.on(i).empty()) continue;
       const Offsets open = gates_[i + 1].open;
@@ -291,6 +307,7 @@ class GateSweep {
         if (j == last_gate() && seen.low <= 0 && seen.high >= 0) end_is_seen_ = true;
       }
       if (j == next.last() + 1 && j > now.last() + 1) farthest.push_back(sight.limits());
+      return j;
     });
     if (end_is_seen_) return true;  // from the layer before
     if (next.last() == now.last()) return false;
