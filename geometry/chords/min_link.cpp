@@ -92,6 +92,17 @@ class View {
     return true;
   }
 
+  // The same of circles one behind the other.
+  bool pass_all(std::span<const Circle> circles) {
+    const std::vector<Point2> polygon = polygon_;
+    for (auto circle = circles.rbegin(); circle != circles.rend(); ++circle) {
+      if (pass(*circle)) continue;
+      polygon_ = polygon;
+      return false;
+    }
+    return true;
+  }
+
   [[nodiscard]] bool sees(const Point3& p) const {
     const Vector3 way = p - eye_;
     const double onward = way.dot(ahead_);
@@ -194,7 +205,16 @@ class SpaceWalk {
                              const Vector3& ahead) const {
     Lookout out{vertex, next, next - 1, vertex, next > last_gate()};
     View view(vertex.place, ahead);
-    while (out.last < last_gate() && view.pass(circles_[out.last + 1])) ++out.last;
+    // Some circles at once, the farthest first: most others let all pass that this one does.
+    for (std::size_t some = kLink.at_once; some > 0;) {
+      some = std::min(some, last_gate() - out.last);
+      const auto next_some = std::span(circles_).subspan(out.last + 1, some);
+      if (view.pass_all(next_some)) {
+        out.last += some;
+      } else {
+        some /= 2;
+      }
+    }
     if (out.last < next) return out;
     if (out.last == last_gate()) {
       out.sees_end = view.sees(gates_.back().center);
@@ -278,10 +298,12 @@ class SpaceWalk {
 // Along a section without corners.
 class LinkSection {
  public:
-  // `chords`: vertices of proved chords over the section, its ends included.
-  LinkSection(const CurvePieces& pieces, std::span<const double> chords,
+  // `chords`: vertices of proved chords over the section, its ends included, as many as balanced
+  // ones.
+  LinkSection(const MarkedPieces& curve, std::span<const double> chords,
               const MinLinkOptions& options)
-      : pieces_(pieces),
+      : curve_(curve),
+        pieces_(curve.pieces),
         chords_(chords),
         from_(chords.front()),
         to_(chords.back()),
@@ -297,9 +319,12 @@ class LinkSection {
     Vertices found = continued({{pieces_.point_at(from_), from_}}, gates, options_.tolerance);
     if (options_.balanced && found.size() > 2) balance(found, gates);
     if (prove(found) && found.size() < chords_.size()) return found;
+    const ChordOptions chords = {.max_deviation = options_.tolerance,
+                                 .balanced = options_.balanced};
     Vertices on_curve;
-    on_curve.reserve(chords_.size());
-    for (const double u : chords_) on_curve.push_back({pieces_.point_at(u), u});
+    for (const double u : chord_vertices(curve_, from_, to_, chords)) {
+      on_curve.push_back({pieces_.point_at(u), u});
+    }
     return on_curve;
   }
 
@@ -415,6 +440,7 @@ class LinkSection {
     return (vertex.place - pieces_.point_at(vertex.parameter)).norm() <= options_.tolerance;
   }
 
+  const MarkedPieces& curve_;
   const CurvePieces& pieces_;
   std::span<const double> chords_;
   double from_;
@@ -436,16 +462,16 @@ void check(const MinLinkOptions& options) {
 std::vector<LinkVertex> min_link_vertices(const BsplineCurve& curve, double from, double to,
                                           const MinLinkOptions& options) {
   check(options);
-  const CurvePieces pieces(curve, from, to);
-  const std::vector<double> chords = chord_vertices(
-      curve, from, to, {.max_deviation = options.tolerance, .balanced = options.balanced});
-  std::vector<double> ends = pieces.corners();
+  const MarkedPieces marked(curve, from, to);
+  const std::vector<double> chords =
+      chord_vertices(marked, from, to, {.max_deviation = options.tolerance, .balanced = false});
+  std::vector<double> ends = marked.corners;
   ends.push_back(to);
-  Vertices vertices = {{pieces.point_at(from), from}};
+  Vertices vertices = {{marked.pieces.point_at(from), from}};
   auto chord = chords.begin();  // corners are vertices of the chords too
   for (const double end : ends) {
     const auto chord_end = std::lower_bound(chord, chords.end(), end);
-    const Vertices links = LinkSection(pieces, {chord, chord_end + 1}, options).links();
+    const Vertices links = LinkSection(marked, {chord, chord_end + 1}, options).links();
     vertices.insert(vertices.end(), links.begin() + 1, links.end());
     chord = chord_end;
   }

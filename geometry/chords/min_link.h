@@ -36,7 +36,7 @@ struct MinLinkTuning {
   // Of the tolerance: a curve this near to a plane is taken as plane. Two points of a link and the
   // curve may be apart twice that across the plane, which costs 0.1 % of the tolerance.
   double flat = 0.02;  // [at 0: MinLinkCount.IsThatOfTheTable]
-  // Balancing: halvings in search of the least tolerance that needs as many links, above this part
+  // Balancing: rounds in search of the least tolerance that needs as many links, above this part
   // of it (9/16 needs a third more links), over the last links only: the cost does not grow with
   // the run.
   int balancing_rounds = 2;
@@ -48,9 +48,10 @@ struct MinLinkTuning {
   // In space. Corners of the polygon in a gate's circle: between two of them it is 2 % narrower; to
   // where the curve bends, where the width is needed, it is not.
   static constexpr int corners = 16;
-  int end_halvings = 13;   // of the last point of a link: to 1e-4 of the way between two gates
-  double same_bend = 0.5;  // cosine: bends that differ by less than 60 degrees are one
-  double widest_view = 1;  // tangent: a link turns from the curve by less than 45 degrees [>]
+  std::size_t at_once = 8;  // circles
+  int end_halvings = 7;     // of the last point of a link: to 1 % of the way between two gates
+  double same_bend = 0.5;   // cosine: bends that differ by less than 60 degrees are one
+  double widest_view = 1;   // tangent: a link turns from the curve by less than 45 degrees [>]
   // Where a link may turn before the farthest point it gets to, as parts of its gates: there the
   // link after it may see more, when the curve begins to bend another way.
   std::array<double, 3> earlier_turns = {0.125, 0.25, 0.5};  // the last: [at 0.25]
