@@ -49,13 +49,15 @@ PartSample sample_of_part(const ProgramPart& part, PartRuns runs, double toleran
     for (std::size_t i = 0; i < runs.works.size(); ++i) {
       const Run& run = run_of(runs.works[i]);
       const double coarse = coarse_part(run, tolerance_of(run, tolerance_mm));
-      if ((coarse >= kBounds.corners) == of_corners) order.push_back(i);
+      const bool is_tried = runs.works[i].selection.reason.empty();
+      if (is_tried && (coarse >= kBounds.corners) == of_corners) order.push_back(i);
     }
   }
   std::vector<std::size_t> moves;
   for (const std::size_t work : order) moves.push_back(motion_count(run_of(runs.works[work])));
   PartSample sample;
-  std::vector<bool> is_taken(runs.works.size());
+  std::vector<bool> is_taken;
+  for (const RunState& work : runs.works) is_taken.push_back(!work.selection.reason.empty());
   for (const SampledRun& taken : sample_of(moves)) {
     const RunState& work = runs.works[order[taken.run]];
     is_taken[order[taken.run]] = true;
@@ -91,7 +93,6 @@ class ToleranceSurvey {
     const ProgramSink sink = {[](std::string_view) { return true; },
                               [this] {
                                 parts_.clear();
-                                runs_ = looked_at_ = 0;
                                 return true;
                               }};
     SmoothResult read =
@@ -100,12 +101,12 @@ class ToleranceSurvey {
                               const ProgressCallback& tell) { return look_at(part, runs, tell); });
     for (std::size_t i = 0; read.understood && i < settings_.size(); ++i) {
       ExploredRow row{settings_[i], {}, {}};
-      row.runs = runs_;
-      row.runs_looked_at = looked_at_;
       row.options.quick = false;
-      for (const auto& [line, figures] : parts_) {
-        add_to(row.before, figures[i].first);
-        add_to(row.after, figures[i].second);
+      for (const auto& [line, part] : parts_) {
+        row.runs += part.runs;
+        row.runs_looked_at += part.runs_looked_at;
+        add_to(row.before, part.figures[i].first);
+        add_to(row.after, part.figures[i].second);
       }
       const double elsewhere = read.program_before.seconds - row.before.time_s;
       for (ExploredFigures* figures : {&row.before, &row.after}) {
@@ -118,6 +119,13 @@ class ToleranceSurvey {
   }
 
  private:
+  struct PartFigures {
+    std::size_t runs = 0;
+    std::size_t runs_looked_at = 0;
+    // For each setting: before and after. Of blocks what they are more.
+    std::vector<std::pair<ExploredFigures, ExploredFigures>> figures;
+  };
+
   bool look_at(const ProgramPart& part, const PartRuns& runs, const ProgressCallback& tell) {
     if (runs.works.empty()) return true;
     const PartSample sample = sample_of_part(part, runs, settings_.front().tolerance_mm);
@@ -145,18 +153,15 @@ class ToleranceSurvey {
       }
     }
     const std::scoped_lock lock(adding_);
-    runs_ += runs.works.size();
-    looked_at_ += sample.runs.works.size();
-    parts_.insert_or_assign(part.program.blocks.front().line, std::move(all));
+    parts_.insert_or_assign(
+        part.program.blocks.front().line,
+        PartFigures{runs.works.size(), sample.runs.works.size(), std::move(all)});
     return true;
   }
 
   std::vector<SmoothOptions> settings_;
   std::mutex adding_;
-  std::size_t runs_ = 0;
-  std::size_t looked_at_ = 0;
-  // By first line, for each setting: before and after. Of blocks what they are more.
-  std::map<std::uint32_t, std::vector<std::pair<ExploredFigures, ExploredFigures>>> parts_;
+  std::map<std::uint32_t, PartFigures> parts_;  // by first line
 };
 
 // Of a text that could not be proved nothing is written.
