@@ -325,11 +325,16 @@ class PlainReader(Reader):
     SAFE = {"G40": "compensation", "G50": "scaling", "G50.1": "mirror", "G69": "rotation", "G15": "polar",
             "G8": "diameter", "G13.1": "cylinder"}
     OFFSETS = {f"G{n}" for n in (*range(54, 60), 59.1, 59.2, 59.3)}
+    # Mill operator's manual; G112 and G113 are others.
+    OFFSETS_OF_HAAS = {"G110", "G111", *(f"G{n}" for n in range(114, 130))}
     SHIFTS = ("G10", "G28", "G30", "G28.1", "G30.1", "G43", "G43.1", "G44", "G49", "G52", "G53", "G92", "G92.1",
               "G92.2", "G92.3", "M6", "M61")
     ONCE = ("M50", "M51", "M52", "M53", "M62", "M63", "M64", "M65", "M66", "M67", "M68", "M19", "M10", "M11", "G5.1",
             "G187", "G4")
     CYCLES = {f"G{n}" for n in (73, 74, 76, *range(81, 90))}
+
+    def offsets(self):
+        return self.OFFSETS | (self.OFFSETS_OF_HAAS if self.kind == "haas" else set())
 
     def knows(self, code, values):
         if code[0] == "M":
@@ -342,7 +347,7 @@ class PlainReader(Reader):
             return self.kind in LIKE_FANUC
         return code in {"G0", "G1", "G2", "G3", "G17", "G18", "G19", "G90", "G91", "G90.1", "G91.1", "G93", "G94",
                         "G95", "G80", "G33", "G38.2", "G4", "G9", *self.GROUPS, *self.UNSAFE, *self.SAFE,
-                        *self.OFFSETS, *self.SHIFTS, *self.ONCE, *self.CYCLES} or \
+                        *self.offsets(), *self.SHIFTS, *self.ONCE, *self.CYCLES} or \
             code[0] == "G" and code[1:].isdigit() and int(code[1:]) in self.inches
 
     def code(self, code, values, raw):
@@ -389,7 +394,7 @@ class PlainReader(Reader):
                 self.switch("M8", "off")
             else:
                 self.switch(code, "on")
-        elif code in self.OFFSETS:
+        elif code in self.offsets():
             if self.offset_code != code:
                 self.event(code)
                 self.act("moves")
