@@ -38,17 +38,18 @@ struct MinLinkTuning {
   double flat = 0.02;  // [at 0: MinLinkCount.IsThatOfTheTable]
   // Balancing: rounds in search of the least tolerance that needs as many links, above this part
   // of it (9/16 needs a third more links), over the last links only: the cost does not grow with
-  // the run.
+  // the run. [rounds at 1: MinLinkVertices.AreNotFartherApartThanBalancedOnes]
   int balancing_rounds = 2;
   double narrowest = 9.0 / 16;
   // Above the tolerance with which the last link is expected to be as long as the others, as a part
   // of what it is below the whole: where a balanced polyline is looked for first.
+  // [at 0.1: MinLinkVertices.AreNotFartherApartThanBalancedOnes]
   double above_needed = 0.05;
   std::size_t balanced = 40;
   // In space. Corners of the polygon in a gate's circle: between two of them it is 2 % narrower; to
   // where the curve bends, where the width is needed, it is not.
   static constexpr int corners = 16;
-  std::size_t at_once = 8;  // circles
+  std::size_t at_once = 8;  // circles that are passed together, for speed: any number sees as far
   int end_halvings = 7;     // of the last point of a link: to 1 % of the way between two gates
   double same_bend = 0.5;   // cosine: bends that differ by less than 60 degrees are one
   double widest_view = 1;   // tangent: a link turns from the curve by less than 45 degrees [>]
