@@ -174,7 +174,7 @@ constexpr Explanation kExplanations[] = {
      "batten explore shows what other tolerances, forms and preferences would give."},
     {kSlower, "The new form would take more time on the machine.", "A larger tolerance may help."},
     {kLarger, "The new form would be more blocks or bytes, for too little.",
-     "--prefer accuracy where nearness is worth blocks, or a larger tolerance."},
+     "A larger tolerance; --prefer accuracy pays blocks for half the distance."},
     {kFarther, "The new form would be farther from the path that was meant, without being faster.",
      "--prefer size where fewer blocks are worth that."},
     {kNotProved, "The new path could not be proved to keep the tolerance.",

@@ -50,9 +50,10 @@ struct MinLinkTuning {
   // where the curve bends, where the width is needed, it is not.
   static constexpr int corners = 16;
   std::size_t at_once = 8;  // circles that are passed together, for speed: any number sees as far
-  int end_halvings = 7;     // of the last point of a link: to 1 % of the way between two gates
-  double same_bend = 0.5;   // cosine: bends that differ by less than 60 degrees are one
-  double widest_view = 1;   // tangent: a link turns from the curve by less than 45 degrees [>]
+  // Of the last point of a link: to 1 % of the way between two gates.
+  int end_halvings = 7;    // [at 1: MinLinkCount.OfAHelixIsThatOfItsBend]
+  double same_bend = 0.5;  // cosine: bends that differ by less than 60 degrees are one
+  double widest_view = 1;  // tangent: a link turns from the curve by less than 45 degrees [>]
   // Where a link may turn before the farthest point it gets to, as parts of its gates: there the
   // link after it may see more, when the curve begins to bend another way.
   std::array<double, 3> earlier_turns = {0.125, 0.25, 0.5};  // the last: [at 0.25]

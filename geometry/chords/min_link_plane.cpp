@@ -274,8 +274,7 @@ class GateSweep {
     std::size_t unseen = layer.last() + 1;
     if (layer.end) unseen = see(Sight(*layer.end, layer.end_reached), layer.last() + 1);
     see(Sight(gates_[layer.last()], layer.on(layer.last())), layer.last() + 1);
-    const std::size_t two_links_on = unseen + 2 * (unseen - layer.last());
-    if (layer.end && keeps_side(layer.first, std::min(two_links_on, last_gate()))) return;
+    if (layer.end && keeps_side(layer.first, std::min(unseen, last_gate()))) return;
     for (std::size_t i = layer.last(); i-- > layer.first;) {
       if (layer.on(i).empty()) continue;
       const Offsets open = gates_[i + 1].open;

@@ -83,7 +83,7 @@ std::string sampled_runs(const Exploration& found) {
   const auto row = std::ranges::find_if(found.rows, is_sampled);
   if (row == found.rows.end()) return {};
   return fmt::format(
-      "  estimated from {} of {} runs, but for what is recommended, which is from all\n",
+      "  estimates from {} of {} runs, but for the recommended setting: that is of all runs\n",
       row->runs_looked_at, row->runs);
 }
 

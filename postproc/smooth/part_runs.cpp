@@ -215,8 +215,7 @@ class PartSmoother {
     const bool named = options_.method != Method::kBest;
     if (named || !options_.share_work) return {{.in_full = shapes}};
     return like_runs(shapes, [&](std::size_t i) {
-      const Run& run = run_of(runs_.works[works[i]]);
-      return coarse_part(run, tolerance_of(run, options_.tolerance_mm)) >= kBounds.corners;
+      return is_run_of_corners(run_of(runs_.works[works[i]]), options_.tolerance_mm);
     });
   }
 

@@ -241,7 +241,7 @@ class RunSmoother {
     const Form wanted = options().output;
     if (options().linearize || (wanted != Form::kAuto && wanted != Form::kLines)) return;
     if (!fits_ || is_left_out(CurveRole::kVertices)) return;
-    const bool among_corners = corner_part() >= kBounds.corners;
+    const bool among_corners = is_of_corners();
     const bool nearest = options().prefer == Prefer::kAccuracy;
     if (!among_corners && !nearest && !choose(result_, options()).order.empty()) return;
     if (among_corners && roomy && !through_ && !is_out_of_budget()) {
@@ -316,7 +316,7 @@ class RunSmoother {
   void try_tube() {
     if (options().side != geometry::Side::kBoth || options().prefer == Prefer::kAccuracy) return;
     if (context().is_piece() || !std::isfinite(options().machine->max_jerk())) return;
-    if (corner_part() >= kBounds.corners) return;
+    if (is_of_corners()) return;
     CurveRequest request = curve_request(Method::kTube);
     const double least = std::max(bounds_.least_time(), straight_time(fair_->curve, request));
     if (!tube_is_worth_trying(run().points.size(), least, best_time())) return;
@@ -325,6 +325,10 @@ class RunSmoother {
     if (!all) request.rival = best_time();
     if (is_out_of_budget(tube_operations(fair_->curve, request))) return;
     try_curve(CurveRole::kTube, Method::kTube, request);
+  }
+
+  [[nodiscard]] bool is_of_corners() const {
+    return is_run_of_corners(run(), options().tolerance_mm);
   }
 
   [[nodiscard]] double corner_part() const {
@@ -357,7 +361,7 @@ class RunSmoother {
     const Selection so_far = choose(result_, options(), Among::kFormsAlone);
     const bool fewer = wants_few_moves(options()) || options().target->curves_in_auto;
     if (so_far.reason == gcode::reason::kLarger && !(fewer && any_costs_less())) return;
-    const bool in_corners = corner_part() >= kBounds.corners;
+    const bool in_corners = is_of_corners();
     const bool simpler = may_be_simpler(so_far, fewer);
     if (!simpler && !may_be_faster(in_corners)) return;
     const bool for_time = !simpler && in_corners;
@@ -447,7 +451,7 @@ WorthAPlan worth_a_plan(const Run& run, const RunContext& context, const SmoothO
   const Machine& machine = *options.machine;
   const double tolerance = tolerance_of(run, options.tolerance_mm);
   if (context.is_piece() || !std::isfinite(machine.max_jerk()) || options.method != Method::kBest ||
-      coarse_part(run, tolerance) >= kBounds.corners) {
+      is_run_of_corners(run, options.tolerance_mm)) {
     return kAmongForms;
   }
   const double alone =

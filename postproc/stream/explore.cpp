@@ -3,16 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <iterator>
 #include <map>
 #include <mutex>
 #include <span>
 #include <utility>
 #include <vector>
 
-#include "postproc/runs/run_path.h"
 #include "postproc/smooth/part_runs.h"
-#include "postproc/smooth/selection/candidate_bounds.h"
 #include "postproc/smooth/selection/cost.h"
 #include "postproc/stream/pipeline.h"
 #include "postproc/stream/run_sample.h"
@@ -31,50 +28,6 @@ void add_to(ExploredFigures& sum, const ExploredFigures& part) {
   sum.blocks += part.blocks;
   sum.path += part.path;
   sum.rewritten = sum.rewritten || part.rewritten;
-}
-
-// The runs of a part that are looked at.
-struct PartSample {
-  PartRuns runs;                               // the others are copied
-  std::map<std::uint32_t, double> stands_for;  // by first line
-};
-
-PartSample sample_of_part(const ProgramPart& part, PartRuns runs, double tolerance_mm) {
-  const auto run_of = [&](const RunState& work) -> const Run& {
-    return std::get<Run>(runs.sections[work.section].content);
-  };
-  // Runs of corners behind the others: both have their share.
-  std::vector<std::size_t> order;
-  for (const bool of_corners : {false, true}) {
-    for (std::size_t i = 0; i < runs.works.size(); ++i) {
-      const Run& run = run_of(runs.works[i]);
-      const double coarse = coarse_part(run, tolerance_of(run, tolerance_mm));
-      const bool is_tried = runs.works[i].selection.reason.empty();
-      if (is_tried && (coarse >= kBounds.corners) == of_corners) order.push_back(i);
-    }
-  }
-  std::vector<std::size_t> moves;
-  for (const std::size_t work : order) moves.push_back(motion_count(run_of(runs.works[work])));
-  PartSample sample;
-  std::vector<bool> is_taken;
-  for (const RunState& work : runs.works) is_taken.push_back(!work.selection.reason.empty());
-  for (const SampledRun& taken : sample_of(moves)) {
-    const RunState& work = runs.works[order[taken.run]];
-    is_taken[order[taken.run]] = true;
-    const std::uint32_t first_block = runs.sections[work.section].first_block;
-    sample.stands_for[part.program.blocks[first_block].line] = taken.stands_for;
-  }
-  std::vector<RunState> works;
-  for (std::size_t i = 0; i < runs.works.size(); ++i) {
-    if (is_taken[i]) {
-      works.push_back(std::move(runs.works[i]));
-    } else {
-      runs.sections[runs.works[i].section].content = Verbatim{};
-    }
-  }
-  runs.works = std::move(works);
-  sample.runs = std::move(runs);
-  return sample;
 }
 
 // The settings of one tolerance, looked at part by part.
@@ -140,9 +93,7 @@ class ToleranceSurvey {
       if (!smooth_runs(part, options, tell_share, own, &memos)) return false;
       auto& [before, after] = all.emplace_back();
       for (RunReport& run : report_runs(part, own, options.tolerance_mm, {}, false)) {
-        const auto at = sample.stands_for.upper_bound(run.first_line);
-        if (at == sample.stands_for.begin()) continue;  // lines that are copied
-        const double times = std::prev(at)->second;
+        const double times = sample.stands_for(run.first_line);
         const double more =
             static_cast<double>(run.blocks_out) - static_cast<double>(run.blocks_in);
         run.path_before.length_mm *= times;

@@ -1,7 +1,13 @@
 #include "postproc/stream/run_sample.h"
 
 #include <algorithm>
+#include <iterator>
 #include <numeric>
+#include <utility>
+#include <variant>
+
+#include "postproc/runs/run_path.h"
+#include "postproc/smooth/selection/candidate_bounds.h"
 
 namespace batten::postproc {
 
@@ -37,6 +43,46 @@ std::vector<SampledRun> sample_of(std::span<const std::size_t> moves) {
   for (SampledRun& run : sample) {
     if (!is_long(moves[run.run])) run.stands_for *= short_moves / represented;
   }
+  return sample;
+}
+
+double PartSample::stands_for(std::uint32_t line) const {
+  const auto after = by_line.upper_bound(line);
+  return after == by_line.begin() ? 1 : std::prev(after)->second;
+}
+
+PartSample sample_of_part(const ProgramPart& part, PartRuns runs, double user_tolerance_mm) {
+  const auto run_of = [&](const RunState& work) -> const Run& {
+    return std::get<Run>(runs.sections[work.section].content);
+  };
+  std::vector<std::size_t> order;  // of those that are tried, runs of corners behind the others
+  std::vector<bool> is_looked_at(runs.works.size());
+  for (std::size_t i = 0; i < runs.works.size(); ++i) {
+    is_looked_at[i] = !runs.works[i].selection.reason.empty();
+    if (!is_looked_at[i]) order.push_back(i);
+  }
+  std::ranges::stable_partition(order, [&](std::size_t i) {
+    return !is_run_of_corners(run_of(runs.works[i]), user_tolerance_mm);
+  });
+  std::vector<std::size_t> moves;
+  for (const std::size_t i : order) moves.push_back(motion_count(run_of(runs.works[i])));
+  PartSample sample;
+  for (const SampledRun& sampled : sample_of(moves)) {
+    const std::size_t work = order[sampled.run];
+    is_looked_at[work] = true;
+    const Section& section = runs.sections[runs.works[work].section];
+    sample.by_line[part.program.blocks[section.first_block].line] = sampled.stands_for;
+  }
+  std::vector<RunState> works;
+  for (std::size_t i = 0; i < runs.works.size(); ++i) {
+    if (is_looked_at[i]) {
+      works.push_back(std::move(runs.works[i]));
+    } else {
+      runs.sections[runs.works[i].section].content = Verbatim{};
+    }
+  }
+  runs.works = std::move(works);
+  sample.runs = std::move(runs);
   return sample;
 }
 

@@ -4,8 +4,12 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <map>
 #include <span>
 #include <vector>
+
+#include "postproc/smooth/part_runs.h"
 
 namespace batten::postproc {
 
@@ -26,5 +30,18 @@ struct SampledRun {
 // length, and those of a step or more have one each: a systematic sample with probabilities
 // proportional to size. Together they stand for as many moves as there are.
 [[nodiscard]] std::vector<SampledRun> sample_of(std::span<const std::size_t> moves);
+
+// The runs of a part that are looked at.
+struct PartSample {
+  PartRuns runs;                            // the others are copied
+  std::map<std::uint32_t, double> by_line;  // what runs stand for, by their first line
+
+  // Of the run that this line is of, or of its pieces; of other lines it is of no matter.
+  [[nodiscard]] double stands_for(std::uint32_t line) const;
+};
+
+// Of all that have no reason yet to be copied. Runs of corners and others have their share each.
+[[nodiscard]] PartSample sample_of_part(const ProgramPart& part, PartRuns runs,
+                                        double user_tolerance_mm);
 
 }  // namespace batten::postproc

@@ -284,6 +284,10 @@ bool tube_is_worth_trying(std::size_t points, double least_time, double time) {
   return left >= kBounds.tube_wins * time && left >= costs;
 }
 
+bool is_run_of_corners(const Run& run, double user_mm) {
+  return coarse_part(run, tolerance_of(run, user_mm)) >= kBounds.corners;
+}
+
 bool corners_are_worth_trying(double corners, double least_time, double time) {
   return corners >= kBounds.corners && rounding_is_worth_trying(least_time, time);
 }

@@ -24,7 +24,7 @@ struct BoundTuning {
   double least_bytes = 8;      // of a block
   double shorter = 0.9;  // of the bytes of a block in the same form, which it may be shorter than
   double sharp_corner = 30 * geometry::kPi / 180;  // radians: what turns more is meant as a corner
-  double corners = 0.5;  // part of the vertices that makes a run one of corners
+  double corners = 0.5;        // part of the vertices that makes a run one of corners
   double worth_trying = 0.02;  // part of the time: the least that there must be left to win
   // Of the time: what a search for each corner wins at most on the quick rounding of corners.
   double search_wins = 0.1;
@@ -99,6 +99,10 @@ class CandidateBounds {
 
 // The same of the curve of least time in a tube.
 [[nodiscard]] bool tube_is_worth_trying(std::size_t points, double least_time, double time);
+
+// Whether half of its vertices or more are corners for what is allowed to the user (mm):
+// coarse_part.
+[[nodiscard]] bool is_run_of_corners(const Run& run, double user_mm);
 
 // For Method::kBest: whether a method of corners may win on a run. `corners` is coarse_part of it,
 // `time` (s) what its fastest form so far takes on the machine.

@@ -124,6 +124,23 @@ TEST(MinLinkCount, IsThatOfTheClosedFormOnACircle) {
   }
 }
 
+// In space no minimum is claimed, but where the bend is even and hardly leaves a plane along a
+// link, links are as long as in the plane, sqrt(16 T R); the first and the last may be shorter.
+TEST(MinLinkCount, OfAHelixIsThatOfItsBend) {
+  const double r = 10;
+  const double rise = 3;
+  const auto helix = [&](double u) { return Point3(r * std::cos(u), r * std::sin(u), rise * u); };
+  const BsplineCurve curve = curve_of(helix, 0, 20, 1200);
+  const double length = 20 * std::hypot(r, rise);
+  const double radius = (r * r + rise * rise) / r;
+  for (const double tolerance : {0.05, 0.02, 0.01}) {
+    const double even = length / std::sqrt(16 * tolerance * radius);
+    const auto found = min_link_vertices(curve, 0, 20, {.tolerance = tolerance});
+    EXPECT_LE(static_cast<double>(found.size() - 1), std::ceil(even) + 1) << tolerance;
+    EXPECT_GE(static_cast<double>(found.size() - 1), even) << tolerance;
+  }
+}
+
 TEST(MinLinkVertices, AreNotFartherApartThanBalancedOnes) {
   // Balanced: the least tolerance with 6 links on the steep parabola is .03856.
   const auto vertices = min_link_vertices(kSteepParabola.curve(), 1, 10, {.tolerance = .045});

@@ -147,6 +147,25 @@ TEST(Explore, OfManyRunsSomeStandForAll) {
   }
 }
 
+// An estimate that is better than what is proved counts until enough is proved.
+TEST(Explore, RecommendsOfProvedSettingsAloneWhereItIsAsked) {
+  std::vector<ExploredRow> rows;
+  for (const SmoothOptions& options : settings_of("linuxcnc", {0.01})) {
+    ExploredRow& row = rows.emplace_back(ExploredRow{options, {}, {}});
+    row.before.time_s = 100;
+    row.before.blocks = 1000;
+    row.after = row.before;
+    row.after.rewritten = true;
+  }
+  rows[0].after.time_s = 60;
+  rows[1].after.time_s = 80;
+  rows[2].after.time_s = 70;
+  EXPECT_EQ(recommended_row(rows), 0u);
+  EXPECT_EQ(recommended_row(rows, true), std::nullopt);
+  rows[1].proved = rows[2].proved = true;
+  EXPECT_EQ(recommended_row(rows, true), 2u);
+}
+
 TEST(Explore, IsTheSameForAnyNumberOfThreads) {
   const gcode::SourceText source = sample("engraved_text");
   std::vector<SmoothOptions> settings = settings_of("grbl", {0.01});
